@@ -1,0 +1,6 @@
+//! Numerical tools that know nothing of brakes or of probability.
+
+pub mod columns;
+pub mod dual;
+pub mod elementary;
+pub mod real;
