@@ -106,6 +106,10 @@ mod tests {
     fn regression_published_bits_of_the_first_stream() {
         let mut rng = stream(1993, Purpose::Design, 0);
         let bits = [rng.next_u64(), rng.next_u64()];
-        assert_eq!(bits, [5652316154710596717, 14630980462891636090], "seeded studies of earlier versions would change");
+        assert_eq!(
+            bits,
+            [5652316154710596717, 14630980462891636090],
+            "seeded studies of earlier versions would change"
+        );
     }
 }

@@ -1,9 +1,10 @@
 //! Which equations of motion a descent follows.
 
 /// A model of the motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub enum Model {
     /// Both bodies accelerate: paper (13), (14).
+    #[default]
     Dynamic,
     /// The brake's torque balances the line's pull at every moment: paper (15).
     QuasiSteady,

@@ -134,6 +134,15 @@ pub enum Fault {
 }
 
 impl Fault {
+    /// Every kind of fault.
+    pub const ALL: [Fault; 4] =
+        [Fault::ImpossibleInput, Fault::TooManySteps, Fault::StepTooSmall, Fault::NotFinite];
+
+    /// The fault of a name.
+    pub fn from_name(name: &str) -> Option<Fault> {
+        Self::ALL.into_iter().find(|fault| fault.name() == name)
+    }
+
     /// The name in tables and files.
     pub fn name(self) -> &'static str {
         match self {

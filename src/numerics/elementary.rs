@@ -47,3 +47,13 @@ pub fn tan(x: f64) -> f64 {
 pub fn atan(x: f64) -> f64 {
     libm::atan(x)
 }
+
+/// Arc sine.
+pub fn asin(x: f64) -> f64 {
+    libm::asin(x)
+}
+
+/// ln Γ(x) for x > 0.
+pub fn ln_gamma(x: f64) -> f64 {
+    libm::lgamma(x)
+}

@@ -3,4 +3,6 @@
 pub mod columns;
 pub mod dual;
 pub mod elementary;
+pub mod interval;
 pub mod real;
+pub mod special;

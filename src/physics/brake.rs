@@ -22,10 +22,8 @@ impl<R: Real> Brake<R> {
         let fourth = |r: R| (r * r) * (r * r);
         let fourths = fourth(outer) - fourth(inner);
         let fifths = fourth(outer) * outer - fourth(inner) * inner;
-        let inverse_gaps = design
-            .gaps()
-            .iter()
-            .fold(R::constant(0.0), |sum, &gap| sum + R::constant(1.0) / gap);
+        let inverse_gaps =
+            design.gaps().iter().fold(R::constant(0.0), |sum, &gap| sum + R::constant(1.0) / gap);
         let surfaces = R::constant(design.surfaces() as f64);
         Brake {
             torque_factor_m3: R::constant(std::f64::consts::FRAC_PI_2) * fourths * inverse_gaps,

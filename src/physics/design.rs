@@ -44,6 +44,13 @@ impl Target {
     }
 }
 
+/// Pairs of parameters of which the first must be the smaller.
+const ORDERED: [(Parameter, Parameter); 3] = [
+    (Parameter::BrakeInnerRadius, Parameter::BrakeOuterRadius),
+    (Parameter::ReelEmptyRadius, Parameter::ReelFullRadius),
+    (Parameter::PayloadExtractedWeight, Parameter::PayloadWeight),
+];
+
 /// A complete design, SI, in any number type.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Design<R = f64> {
@@ -117,6 +124,15 @@ impl Design<f64> {
         self.gaps = vec![self.get(Parameter::BrakeGap); 2 * rotors];
     }
 
+    /// Whether every value is possible and the values fit each other: [`Design::validate`] without words,
+    /// for the inner loop.
+    pub fn is_possible(&self) -> bool {
+        let fit = |small: Parameter, large: Parameter| self.get(small) < self.get(large);
+        PARAMETERS.iter().all(|info| info.admits(self.get(info.parameter)))
+            && self.gaps.iter().all(|&gap| Parameter::BrakeGap.info().admits(gap))
+            && ORDERED.iter().all(|&(small, large)| fit(small, large))
+    }
+
     /// Checks that every value is possible and that the values fit each other.
     ///
     /// # Errors
@@ -148,11 +164,7 @@ impl Design<f64> {
                 self.gaps[surface]
             )));
         }
-        for (small, large) in [
-            (Parameter::BrakeInnerRadius, Parameter::BrakeOuterRadius),
-            (Parameter::ReelEmptyRadius, Parameter::ReelFullRadius),
-            (Parameter::PayloadExtractedWeight, Parameter::PayloadWeight),
-        ] {
+        for (small, large) in ORDERED {
             if self.get(small) >= self.get(large) {
                 let (small, large) = (small.info(), large.info());
                 return Err(Error::argument(format!(

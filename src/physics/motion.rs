@@ -53,15 +53,13 @@ pub fn moment<R: Real>(c: &Coefficients<R>, state: &DynamicState<R>) -> Moment<D
     let balloon_mass = extracted.mul_add(inverse_gravity, c.balloon.moving_mass_kg);
     let payload_mass = suspended * inverse_gravity;
     let spool_mass = c.reel.inertia_kg_m2 / radius_squared;
-    let spool_pull =
-        R::constant(0.5) * spool_mass * c.reel.squared_radius_slope_m * speed * speed;
+    let spool_pull = R::constant(0.5) * spool_mass * c.reel.squared_radius_slope_m * speed * speed;
     let brake_pull = spool_pull + torque / radius;
 
     let balloon_force =
         c.balloon.net_lift_n - extracted - c.balloon.drag_n(balloon_speed) - brake_pull;
     let payload_force = brake_pull - suspended;
-    let determinant =
-        spool_mass.mul_add(balloon_mass + payload_mass, balloon_mass * payload_mass);
+    let determinant = spool_mass.mul_add(balloon_mass + payload_mass, balloon_mass * payload_mass);
     let inverse = one / determinant;
     let both = spool_mass * (balloon_force + payload_force);
     let balloon_rate = payload_mass.mul_add(balloon_force, both) * inverse;

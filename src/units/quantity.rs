@@ -87,4 +87,68 @@ impl Quantity {
             other => other,
         }
     }
+
+    /// All kinds.
+    pub const ALL: [Quantity; 16] = [
+        Quantity::Number,
+        Quantity::Length,
+        Quantity::Time,
+        Quantity::Temperature,
+        Quantity::TemperatureDifference,
+        Quantity::Speed,
+        Quantity::RotationalSpeed,
+        Quantity::KinematicViscosity,
+        Quantity::Density,
+        Quantity::Mass,
+        Quantity::Force,
+        Quantity::Power,
+        Quantity::Inertia,
+        Quantity::Area,
+        Quantity::HeatCapacity,
+        Quantity::Conductance,
+    ];
+
+    /// The kind, with its article, as a sentence needs it: "a length".
+    pub fn described(self) -> &'static str {
+        match self {
+            Quantity::Number => "a pure number",
+            Quantity::Length => "a length",
+            Quantity::Time => "a time",
+            Quantity::Temperature => "a temperature",
+            Quantity::TemperatureDifference => "a temperature difference",
+            Quantity::Speed => "a speed",
+            Quantity::RotationalSpeed => "a rotational speed",
+            Quantity::KinematicViscosity => "a kinematic viscosity",
+            Quantity::Density => "a density",
+            Quantity::Mass => "a mass",
+            Quantity::Force => "a force",
+            Quantity::Power => "a power",
+            Quantity::Inertia => "a moment of inertia",
+            Quantity::Area => "an area",
+            Quantity::HeatCapacity => "a heat capacity",
+            Quantity::Conductance => "a thermal conductance",
+        }
+    }
+
+    /// A value as an engineer writes it: "0.062 in".
+    pub fn example(self) -> &'static str {
+        match self {
+            Quantity::Number => "5 %",
+            Quantity::Length => "0.062 in",
+            Quantity::Time => "3.5 min",
+            Quantity::Temperature => "60 °F",
+            Quantity::TemperatureDifference => "10 °F",
+            Quantity::Speed => "2.5 ft/s",
+            Quantity::RotationalSpeed => "120 rpm",
+            Quantity::KinematicViscosity => "125000 cSt",
+            Quantity::Density => "970 kg/m³",
+            Quantity::Mass => "1000 kg",
+            Quantity::Force => "6000 lbf",
+            Quantity::Power => "40 kW",
+            Quantity::Inertia => "30 kg·m²",
+            Quantity::Area => "500 m²",
+            Quantity::HeatCapacity => "3990 J/K",
+            Quantity::Conductance => "680 W/K",
+        }
+    }
 }

@@ -74,16 +74,8 @@ fn nodes() -> [f64; 3] {
 fn coefficients() -> [[f64; 3]; 3] {
     let s6 = 6f64.sqrt();
     [
-        [
-            (88.0 - 7.0 * s6) / 360.0,
-            (296.0 - 169.0 * s6) / 1800.0,
-            (-2.0 + 3.0 * s6) / 225.0,
-        ],
-        [
-            (296.0 + 169.0 * s6) / 1800.0,
-            (88.0 + 7.0 * s6) / 360.0,
-            (-2.0 - 3.0 * s6) / 225.0,
-        ],
+        [(88.0 - 7.0 * s6) / 360.0, (296.0 - 169.0 * s6) / 1800.0, (-2.0 + 3.0 * s6) / 225.0],
+        [(296.0 + 169.0 * s6) / 1800.0, (88.0 + 7.0 * s6) / 360.0, (-2.0 - 3.0 * s6) / 225.0],
         [(16.0 - s6) / 36.0, (16.0 + s6) / 36.0, 1.0 / 9.0],
     ]
 }
@@ -105,9 +97,8 @@ pub fn attempt<const N: usize>(
     let c = nodes();
     let a = coefficients();
     let newton = newton_matrix(start, h, &a)?;
-    let scale: [f64; N] = std::array::from_fn(|i| {
-        tolerance.relative * start.state[i].abs().max(tolerance.floor[i])
-    });
+    let scale: [f64; N] =
+        std::array::from_fn(|i| tolerance.relative * start.state[i].abs().max(tolerance.floor[i]));
     let mut stages = [[0.0; N]; 3];
     let mut converged = false;
     for _ in 0..NEWTON_ITERATIONS {

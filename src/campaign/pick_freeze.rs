@@ -1,0 +1,94 @@
+//! The pick-freeze design of a study, evaluated: outcomes of every block.
+
+use super::{Ensemble, Progress};
+use crate::descent::OutcomeQuantity;
+use crate::error::{Error, Result};
+use crate::numerics::columns::Columns;
+use crate::sampling::{Design, Sampler};
+use crate::sensitivity::pick_freeze::{Factor, Plan};
+use crate::streams::Purpose;
+use crate::study::Study;
+use std::collections::BTreeMap;
+
+/// Outcomes of every block of a pick-freeze design.
+#[derive(Debug, Clone)]
+pub struct PickFreezeOutcomes {
+    /// The design.
+    pub plan: Plan,
+    /// One table a block: rows of the design × [`OutcomeQuantity::ALL`], NaN where faulted.
+    pub blocks: Vec<Columns>,
+    /// Descents that could not be computed, over all blocks.
+    pub faults: u64,
+}
+
+impl PickFreezeOutcomes {
+    /// One outcome quantity in every block, through `read`, which is given a row's outcomes.
+    pub fn map(&self, read: impl Fn(&dyn Fn(OutcomeQuantity) -> f64) -> f64) -> Vec<Vec<f64>> {
+        self.blocks
+            .iter()
+            .map(|block| {
+                (0..block.rows())
+                    .map(|k| read(&|quantity: OutcomeQuantity| block.get(k, quantity as usize)))
+                    .collect()
+            })
+            .collect()
+    }
+}
+
+/// The factors of a study: every input by itself, then every group of several as one.
+pub fn factors(study: &Study) -> Vec<Factor> {
+    let single = study
+        .inputs
+        .iter()
+        .enumerate()
+        .map(|(k, input)| Factor { name: input.target.path(), columns: vec![k] });
+    let mut groups: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (k, input) in study.inputs.iter().enumerate() {
+        if let Some(group) = &input.group {
+            groups.entry(group).or_default().push(k);
+        }
+    }
+    let groups = groups.into_iter().filter(|(_, columns)| columns.len() > 1);
+    let grouped = groups.map(|(name, columns)| Factor { name: format!("{name} (all)"), columns });
+    single.chain(grouped).collect()
+}
+
+/// Evaluates the pick-freeze design of a study. `None` if the study asks for none, or `progress` for a
+/// stop.
+///
+/// # Errors
+/// If inputs are correlated, for which Sobol' indices have no meaning.
+pub fn run_pick_freeze(study: &Study, progress: &Progress) -> Result<Option<PickFreezeOutcomes>> {
+    let rows = study.sensitivity.base_samples;
+    if rows == 0 {
+        return Ok(None);
+    }
+    if !study.joint.is_independent() {
+        return Err(Error::argument(CORRELATED));
+    }
+    let inputs = study.inputs.len();
+    let plan = Plan::new(rows as usize, inputs, factors(study))?;
+    let seed = study.sampling.seed;
+    let columns = plan.base_columns();
+    let sampler = Sampler::new(Design::MonteCarlo, columns, rows, 1, seed, Purpose::PickFreeze)?;
+    let mut base = Columns::new(rows as usize, columns);
+    sampler.fill(0, &mut base)?;
+    let ensemble = Ensemble::new(study);
+    let mut points = Columns::new(0, 0);
+    let mut blocks = Vec::with_capacity(plan.blocks());
+    let mut faults = 0;
+    for block in 0..plan.blocks() {
+        if progress.stopping() {
+            return Ok(None);
+        }
+        plan.fill_block(block, &base, &mut points)?;
+        let table = ensemble.at_uniform(&points, progress);
+        faults += table.faults.iter().flatten().count() as u64;
+        blocks.push(table.outcomes);
+    }
+    Ok(Some(PickFreezeOutcomes { plan, blocks, faults }))
+}
+
+/// Why there are no indices when inputs are correlated.
+pub const CORRELATED: &str = "Sobol' indices divide the variance among independent inputs; these are \
+    correlated, so a share of it belongs to several at once and the indices would mislead";

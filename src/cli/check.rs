@@ -1,0 +1,106 @@
+//! `reeldown check`: every resolved value of a study, with its unit and source.
+
+use super::arguments::CheckArguments;
+use super::{Ending, done};
+use crate::error::Result;
+use crate::render::table;
+use crate::study::Study;
+
+/// Validates a study and shows it.
+pub(super) fn check(arguments: &CheckArguments) -> Result<Ending> {
+    let study = arguments.study.load(&[])?;
+    study.design.validate()?;
+    if arguments.json {
+        return done(&format!("{:#}", json(&study)));
+    }
+    let mut text = format!("{}\n{}: valid\n\n", study.title, study.origin);
+    let rows = study.resolved().into_iter().map(|row| {
+        let (law, known, source) = match row.uncertain {
+            Some(law) => {
+                let each =
+                    if law.inputs > 1 { format!(" (×{})", law.inputs) } else { String::new() };
+                (format!("{}{each}", law.law), law.known.name(), law.source)
+            }
+            None => ("–".to_owned(), "–", row.source),
+        };
+        [row.path, row.text, law, known.to_owned(), source]
+    });
+    let header = ["input", "nominal", "law", "known", "source"];
+    text += &format!("{}\n\n", table(&header, 0..0, rows, None));
+    for limit in &study.limits {
+        text += &format!("limit: {} {} {}\n", limit.outcome.name(), limit.kind.name(), limit.text);
+    }
+    if let Some(requirement) = study.requirement {
+        text += &format!(
+            "requirement: reliability {} at confidence {}\n",
+            requirement.reliability, requirement.confidence
+        );
+    }
+    let plan = &study.sampling;
+    text += &format!(
+        "sampling: {}, {} samples, seed {}\nmodel: {}\ndigest: {}\n",
+        plan.design.name(),
+        plan.samples,
+        plan.seed,
+        study.model.name(),
+        study.digest()
+    );
+    for note in &study.notes {
+        text += &format!("note: {note}\n");
+    }
+    done(&text)
+}
+
+fn json(study: &Study) -> serde_json::Value {
+    let inputs: Vec<serde_json::Value> = study
+        .resolved()
+        .into_iter()
+        .map(|row| {
+            serde_json::json!({
+                "path": row.path,
+                "description": row.description,
+                "unit": row.quantity.si_unit(),
+                "value": row.value,
+                "source": row.source,
+                "uncertain": row.uncertain.map(|law| serde_json::json!({
+                    "law": law.law,
+                    "mean": law.mean,
+                    "standard_deviation": law.sd,
+                    "inputs": law.inputs,
+                    "known": law.known.name(),
+                    "source": law.source,
+                })),
+            })
+        })
+        .collect();
+    let limits: Vec<serde_json::Value> = study
+        .limits
+        .iter()
+        .map(|limit| {
+            serde_json::json!({
+                "outcome": limit.outcome.name(),
+                "side": limit.kind.name(),
+                "value": limit.value,
+                "unit": limit.outcome.quantity().si_unit(),
+            })
+        })
+        .collect();
+    serde_json::json!({
+        "title": study.title,
+        "model": study.model.name(),
+        "inputs": inputs,
+        "limits": limits,
+        "requirement": study.requirement.map(|r| serde_json::json!({
+            "reliability": r.reliability,
+            "confidence": r.confidence,
+        })),
+        "sampling": {
+            "design": study.sampling.design.name(),
+            "samples": study.sampling.samples,
+            "seed": study.sampling.seed,
+            "replicates": study.sampling.replicates,
+        },
+        "study_digest": study.digest(),
+        "notes": study.notes,
+    })
+}

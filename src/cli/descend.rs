@@ -1,0 +1,110 @@
+//! `reeldown descend`: one nominal descent.
+
+use super::arguments::DescendArguments;
+use super::{Ending, done};
+use crate::descent::reference::{self, REFERENCE_TOLERANCE, Sample, Trajectory};
+use crate::descent::{Model, Outcome, OutcomeQuantity};
+use crate::error::{Error, Result};
+use crate::physics::motion::OBSERVABLES;
+use crate::physics::{Coefficients, Design};
+use crate::render::table;
+use crate::store::{Field, write_table};
+use crate::study::Study;
+use crate::units::engineering;
+use serde_json::{Map, Value, json};
+use std::path::Path;
+
+/// Longest step of a traced descent, s: fine enough to draw from.
+const TRACE_STEP_S: f64 = 0.25;
+
+/// Computes the nominal descent of a study and shows it.
+pub(super) fn descend(arguments: &DescendArguments) -> Result<Ending> {
+    let model = arguments.model.iter().map(|name| ("--model", format!("model={name}")));
+    let study = arguments.study.load(&model.collect::<Vec<_>>())?;
+    study.design.validate()?;
+    let outcome = integrate(&study.design, study.model, arguments.trace.as_deref())?;
+    if arguments.json {
+        return done(&format!("{:#}", Value::Object(outcome_json(&outcome))));
+    }
+    let mut text = format!("{}: nominal descent, {} model\n\n", study.title, study.model.name());
+    text += &outcome_table(&study, &outcome);
+    if let Some(path) = &arguments.trace {
+        text += &format!("\ncourse of the descent: {}\n", path.display());
+    }
+    done(&text)
+}
+
+/// Integrates a design by the plain integrator, writing its course if asked to.
+pub(super) fn integrate(design: &Design, model: Model, trace: Option<&Path>) -> Result<Outcome> {
+    let coefficients = Coefficients::new(design);
+    let fail = |fault: crate::descent::Fault| {
+        Error::argument(format!("the descent cannot be integrated: {}", fault.name()))
+    };
+    let Some(path) = trace else {
+        return reference::descend(&coefficients, model, REFERENCE_TOLERANCE).map_err(fail);
+    };
+    let Trajectory { samples, .. } =
+        reference::trajectory(&coefficients, model, REFERENCE_TOLERANCE, TRACE_STEP_S)
+            .map_err(fail)?;
+    write_trace(path, model, &samples)?;
+    // The outcome is that of the descent without a limit on its steps, whatever is traced.
+    reference::descend(&coefficients, model, REFERENCE_TOLERANCE).map_err(fail)
+}
+
+fn write_trace(path: &Path, model: Model, samples: &[Sample]) -> Result<()> {
+    let field =
+        |read: &dyn Fn(&Sample) -> Option<f64>| Field::Number(samples.iter().map(read).collect());
+    let mut columns = vec![
+        ("time_s".to_owned(), field(&|s| Some(s.time_s))),
+        ("line_m".to_owned(), field(&|s| Some(s.line_m))),
+        ("balloon_velocity_m_per_s".to_owned(), field(&|s| s.balloon_velocity_m_per_s)),
+        ("torque_nm".to_owned(), field(&|s| Some(s.torque_nm))),
+    ];
+    for (k, name) in OBSERVABLES.iter().enumerate() {
+        columns.push(((*name).to_owned(), field(&|s| Some(s.observation[k]))));
+    }
+    columns.push(("rotor_temperature_k".to_owned(), field(&|s| Some(s.temperatures_k[1]))));
+    columns.push(("housing_temperature_k".to_owned(), field(&|s| Some(s.temperatures_k[2]))));
+    let metadata = vec![
+        ("reeldown.version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
+        ("reeldown.model".to_owned(), model.name().to_owned()),
+    ];
+    write_table(path, columns, metadata)
+}
+
+/// An outcome as JSON, SI, under the Parquet column names.
+pub(super) fn outcome_json(outcome: &Outcome) -> Map<String, Value> {
+    let mut object = Map::new();
+    object.insert("deployed".to_owned(), json!(outcome.deployed));
+    for quantity in OutcomeQuantity::ALL {
+        object.insert(quantity.column(), json!(outcome.get(quantity)));
+    }
+    object
+}
+
+/// An outcome as a table for a terminal, with the limits it is held against.
+pub(super) fn outcome_table(study: &Study, outcome: &Outcome) -> String {
+    let rows = OutcomeQuantity::ALL.into_iter().map(|quantity| {
+        let value = engineering(outcome.get(quantity), quantity.quantity());
+        let limits: Vec<_> =
+            study.limits.iter().filter(|limit| limit.outcome == quantity).collect();
+        let texts: Vec<String> =
+            limits.iter().map(|l| format!("{} {}", l.kind.name(), l.text)).collect();
+        let margins: Vec<String> = limits
+            .iter()
+            .map(|limit| {
+                let margin = limit.margin(outcome);
+                let text = engineering(margin, quantity.quantity().of_difference());
+                if margin < 0.0 { format!("{text} BREACH") } else { text }
+            })
+            .collect();
+        [quantity.title().to_owned(), value, texts.join(", "), margins.join(", ")]
+    });
+    let table = table(&["outcome", "value", "limit", "margin"], 1..4, rows, None);
+    let end = if outcome.deployed {
+        String::new()
+    } else {
+        "\nThe line had not run out after 1800 s: the values are those at that time.\n".to_owned()
+    };
+    format!("{table}\n{end}")
+}

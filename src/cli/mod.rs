@@ -1,0 +1,76 @@
+//! What was typed, carried out: the only place that prints, and the only one that knows clap.
+
+mod arguments;
+mod check;
+mod descend;
+mod describe;
+mod diagnostics;
+mod output;
+mod parentage;
+mod replay;
+mod run;
+mod watch;
+
+use crate::error::Result;
+use arguments::{Arguments, Command};
+use clap::Parser;
+use output::{say, say_error};
+use std::process::ExitCode;
+
+/// How a command ended, as an exit code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Ending {
+    /// Done, and the requirement, if any, is met.
+    Done,
+    /// The study cannot be run.
+    Failed,
+    /// Done, and the requirement is not met.
+    NotMet,
+    /// Done, and the requirement is undecided.
+    Undecided,
+    /// Stopped by Ctrl-C with what was computed kept.
+    Interrupted,
+}
+
+impl From<Ending> for ExitCode {
+    fn from(ending: Ending) -> ExitCode {
+        ExitCode::from(match ending {
+            Ending::Done => 0,
+            Ending::Failed => 1,
+            Ending::NotMet => 3,
+            Ending::Undecided => 4,
+            Ending::Interrupted => 130,
+        })
+    }
+}
+
+/// Reads the command line and carries it out. Usage errors exit with 2, by clap.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match carry_out(arguments) {
+        Ok(ending) => ending.into(),
+        Err(error) => {
+            say_error(&diagnostics::render(&error, output::stderr_style()));
+            Ending::Failed.into()
+        }
+    }
+}
+
+fn carry_out(arguments: Arguments) -> Result<Ending> {
+    match arguments.command {
+        None => run::run(&arguments.run),
+        Some(Command::Run(run)) => run::run(&run),
+        Some(Command::Descend(descend)) => descend::descend(&descend),
+        Some(Command::Replay(replay)) => replay::replay(&replay),
+        Some(Command::Check(check)) => check::check(&check),
+        Some(Command::Schema { kind }) => describe::schema(kind),
+        Some(Command::Completions { shell }) => describe::completions(shell),
+        Some(Command::Man) => describe::man(),
+    }
+}
+
+/// Prints lines to standard output and says that all is well.
+fn done(text: &str) -> Result<Ending> {
+    say(text)?;
+    Ok(Ending::Done)
+}

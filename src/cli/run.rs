@@ -1,0 +1,258 @@
+//! `reeldown run`: the main job.
+
+use super::arguments::RunArguments;
+use super::output::{say, say_error, stdout_style};
+use super::watch::{Watch, stop_on_interrupt};
+use super::{Ending, parentage};
+use crate::campaign::{self, Progress, ROW_GROUP, Record};
+use crate::error::{Error, Result};
+use crate::findings::{self, DriversFinding, Evidence, Findings, VerdictWord};
+use crate::numerics::interval::Estimate;
+use crate::render;
+use crate::store::{Field, OutcomesReader, OutcomesWriter, Parentage, write_table, write_text};
+use crate::study::Study;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
+
+/// The table of samples.
+const OUTCOMES: &str = "outcomes.parquet";
+
+/// Runs a study and writes its report and tables.
+pub(super) fn run(arguments: &RunArguments) -> Result<Ending> {
+    let options =
+        [("--samples", "samples", &arguments.samples), ("--seed", "seed", &arguments.seed)];
+    let options: Vec<(&str, String)> = options
+        .into_iter()
+        .filter_map(|(option, key, value)| {
+            Some((option, format!("sampling.{key}={}", value.as_ref()?)))
+        })
+        .collect();
+    let study = arguments.study.load(&options)?;
+    study.design.validate()?;
+    let directory =
+        arguments.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(arguments.study.name()));
+    campaign::with_threads(arguments.threads.map(usize::from), || {
+        Run { arguments, study: &study, directory: &directory, parentage: parentage::of(&study) }
+            .carry_out()
+    })?
+}
+
+struct Run<'a> {
+    arguments: &'a RunArguments,
+    study: &'a Study,
+    directory: &'a Path,
+    parentage: Parentage,
+}
+
+impl Run<'_> {
+    fn carry_out(&self) -> Result<Ending> {
+        let begun = Instant::now();
+        let progress = Arc::new(Progress::default());
+        stop_on_interrupt(&progress)?;
+        let (record, computed) = self.sample(&progress)?;
+        let sampled = begun.elapsed();
+        let samples = self.study.sampling.samples;
+        if record.counts().samples() < samples {
+            return Ok(self.interrupted(record.counts().samples()));
+        }
+        let pick_freeze = {
+            let _watch = Watch::start(&progress, self.sensitivity_descents(), "sensitivity");
+            match campaign::run_pick_freeze(self.study, &progress) {
+                Ok(Some(design)) => Ok(design),
+                Ok(None) if progress.stopping() => return Ok(self.interrupted(samples)),
+                Ok(None) => {
+                    Err("the study asks for none (sensitivity.base_samples = 0)".to_owned())
+                }
+                Err(reason) => Err(reason.to_string()),
+            }
+        };
+        let findings = findings::gather(&Evidence {
+            study: self.study,
+            record: &record,
+            nominal: campaign::nominal(self.study),
+            pick_freeze,
+            command: self.command(),
+        })?;
+        self.write(&findings)?;
+        self.write_provenance(begun.elapsed().as_secs_f64(), sampled.as_secs_f64(), computed)?;
+        self.report(&findings)
+    }
+
+    /// Computes the samples that are not there yet and writes all of them.
+    fn sample(&self, progress: &Arc<Progress>) -> Result<(Record, u64)> {
+        let path = self.directory.join(OUTCOMES);
+        let samples = self.study.sampling.samples;
+        let sampler = campaign::sampler(self.study)?;
+        let mut record = Record::new(self.study, sampler.replicates())?;
+        let before = if self.arguments.resume { self.earlier(&path)? } else { None };
+        let mut writer = OutcomesWriter::create(&path, self.study, &self.parentage)?;
+        let mut start = 0;
+        if let Some(reader) = &before {
+            let whole = if reader.rows() >= samples {
+                samples
+            } else {
+                reader.rows() / ROW_GROUP * ROW_GROUP
+            };
+            while start < whole {
+                let rows = (whole - start).min(ROW_GROUP);
+                let table = reader.read(self.study, start, rows as usize)?;
+                record.absorb(&table);
+                writer.write(&table)?;
+                start += rows;
+            }
+        }
+        {
+            let _watch = Watch::start(progress, samples - start, "descents");
+            let mut sink = |table| {
+                record.absorb(&table);
+                writer.write(&table)
+            };
+            campaign::run(self.study, start..samples, progress, &mut sink)?;
+        }
+        writer.finish()?;
+        let computed = record.counts().samples() - start;
+        Ok((record, computed))
+    }
+
+    /// The run to continue, if there is one and it is of this study.
+    fn earlier(&self, path: &Path) -> Result<Option<OutcomesReader>> {
+        if !path.exists() {
+            say_error(&format!("{} is not there: starting from the first sample", path.display()));
+            return Ok(None);
+        }
+        let reader = OutcomesReader::open(path)?;
+        let same = |key: &str| reader.parentage().0.get(key) == self.parentage.0.get(key);
+        if !same("version") || !same("row_digest") {
+            return Err(Error::file(
+                path,
+                "resume",
+                "it was made by another study, seed or version, so its samples are others",
+                "run without --resume to replace it, or name another directory with --out",
+            ));
+        }
+        Ok(Some(reader))
+    }
+
+    fn interrupted(&self, computed: u64) -> Ending {
+        say_error(&format!(
+            "stopped after {computed} of {} samples, which are in {}\nto go on: {} --resume{}",
+            self.study.sampling.samples,
+            self.directory.join(OUTCOMES).display(),
+            self.command(),
+            self.arguments.out.as_ref().map_or(String::new(), |out| {
+                format!(" --out {}", quoted(&out.display().to_string()))
+            }),
+        ));
+        Ending::Interrupted
+    }
+
+    fn sensitivity_descents(&self) -> u64 {
+        let factors = campaign::factors(self.study).len() as u64;
+        self.study.sensitivity.base_samples * (2 + factors)
+    }
+
+    /// The command that gives the same numbers.
+    fn command(&self) -> String {
+        let mut words = vec!["reeldown".to_owned(), "run".to_owned()];
+        if let Some(study) = &self.arguments.study.study {
+            words.push(quoted(&study.display().to_string()));
+        }
+        let options = [("--samples", &self.arguments.samples), ("--seed", &self.arguments.seed)];
+        for (option, value) in options {
+            words.extend(value.iter().map(|value| format!("{option} {}", quoted(value))));
+        }
+        words.extend(self.arguments.study.set.iter().map(|s| format!("--set {}", quoted(s))));
+        words.join(" ")
+    }
+
+    fn write(&self, findings: &Findings) -> Result<()> {
+        let at = |name: &str| self.directory.join(name);
+        write_text(&at("findings.json"), &json(findings)?)?;
+        write_text(&at("report.md"), &render::markdown(findings)?)?;
+        write_sensitivity(&at("sensitivity.parquet"), &findings.drivers, &self.parentage)
+    }
+
+    /// What may differ between two runs of the same study: kept out of everything else.
+    fn write_provenance(&self, seconds: f64, sampling: f64, computed: u64) -> Result<()> {
+        let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |t| t.as_secs());
+        let provenance = serde_json::json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "command": std::env::args().collect::<Vec<_>>(),
+            "finished_unix_s": since_1970,
+            "host": std::fs::read_to_string("/proc/sys/kernel/hostname").ok().map(|h| h.trim().to_owned()),
+            "architecture": std::env::consts::ARCH,
+            "operating_system": std::env::consts::OS,
+            "threads": self.arguments.threads.map_or_else(campaign::threads, usize::from),
+            "wall_time_s": seconds,
+            "sampling_time_s": sampling,
+            "samples_computed": computed,
+            "samples_read_again": self.study.sampling.samples - computed,
+            "study_digest": self.study.digest(),
+        });
+        write_text(&self.directory.join("provenance.json"), &format!("{provenance:#}\n"))
+    }
+
+    fn report(&self, findings: &Findings) -> Result<Ending> {
+        if self.arguments.json {
+            say(&json(findings)?)?;
+        } else if !self.arguments.quiet {
+            let summary = render::terminal(findings, stdout_style());
+            say(&format!("{summary}\nreport: {}", self.directory.join("report.md").display()))?;
+        }
+        Ok(match findings.verdict.word {
+            VerdictWord::Met | VerdictWord::NoRequirement => Ending::Done,
+            VerdictWord::NotMet => Ending::NotMet,
+            VerdictWord::Undecided => Ending::Undecided,
+        })
+    }
+}
+
+fn json(findings: &Findings) -> Result<String> {
+    serde_json::to_string_pretty(findings)
+        .map(|text| text + "\n")
+        .map_err(|reason| Error::argument(format!("the findings cannot be written: {reason}")))
+}
+
+/// A word of a command line, quoted if the shell would take it apart.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', r"'\''"))
+}
+
+/// Every index of every output, one row each.
+fn write_sensitivity(path: &Path, drivers: &DriversFinding, parentage: &Parentage) -> Result<()> {
+    let rows: Vec<_> = drivers
+        .outputs
+        .iter()
+        .flat_map(|output| output.factors.iter().map(move |factor| (output, factor)))
+        .flat_map(|(output, factor)| {
+            let both = [("first", &factor.indices.first), ("total", &factor.indices.total)];
+            both.map(|(order, estimate)| (output, factor, order, estimate))
+        })
+        .collect();
+    let text =
+        |read: &dyn Fn(usize) -> Option<String>| Field::Text((0..rows.len()).map(read).collect());
+    let number = |read: &dyn Fn(&Estimate) -> Option<f64>| {
+        Field::Number(rows.iter().map(|(_, _, _, estimate)| read(estimate)).collect())
+    };
+    let columns = vec![
+        ("output".to_owned(), text(&|k| Some(rows[k].0.name.clone()))),
+        ("factor".to_owned(), text(&|k| Some(rows[k].1.name.clone()))),
+        ("inputs".to_owned(), Field::Count(rows.iter().map(|r| r.1.inputs as u64).collect())),
+        ("order".to_owned(), text(&|k| Some(rows[k].2.to_owned()))),
+        ("index".to_owned(), number(&|e| e.value)),
+        ("standard_error".to_owned(), number(&|e| e.standard_error)),
+        ("lower_95".to_owned(), number(&|e| e.interval.interval().map(|i| i.lower))),
+        ("upper_95".to_owned(), number(&|e| e.interval.interval().map(|i| i.upper))),
+        ("why_no_interval".to_owned(), text(&|k| rows[k].3.interval.why_none().map(str::to_owned))),
+        (
+            "rows_left_out".to_owned(),
+            Field::Count(rows.iter().map(|r| r.1.indices.rows_left_out as u64).collect()),
+        ),
+    ];
+    write_table(path, columns, parentage.entries())
+}

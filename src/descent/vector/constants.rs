@@ -1,0 +1,185 @@
+//! A lane's constants: a descent's coefficients in the combinations that the kernels use.
+
+use crate::numerics::lanes::Lanes;
+use crate::physics::{Coefficients, GRAVITY};
+
+macro_rules! constants {
+    ($($(#[$doc:meta])* $name:ident,)*) => {
+        /// The constants of as many descents as there are lanes.
+        #[derive(Clone, Copy)]
+        #[repr(C)]
+        pub struct Constants<V> {
+            $($(#[$doc])* pub $name: V,)*
+        }
+
+        impl<V: Lanes> Constants<V> {
+            /// The same constants in every lane.
+            pub fn splat(one: &Constants<f64>) -> Self {
+                Constants { $($name: V::splat(one.$name),)* }
+            }
+
+            /// Sets one lane's constants.
+            pub fn set_lane(&mut self, lane: usize, one: &Constants<f64>) {
+                $(self.$name.lanes_mut()[lane] = one.$name;)*
+            }
+        }
+    };
+}
+
+constants! {
+    /// Line length `L`, m.
+    length,
+    /// `Ro²`, m².
+    full_radius_squared,
+    /// `s = (Ro² − Ri²)/L`, m.
+    radius_slope,
+    /// Reels' inertia `J`, kg·m².
+    inertia,
+    /// `½ J s`: factor of the spool's own pull in `(v/R²)²`.
+    spool_pull,
+    /// `k`: torque per reel speed in an infinitely hot fluid, N·m·s.
+    torque,
+    /// `1/k`.
+    inverse_torque,
+    /// `−B`, K.
+    minus_viscosity_temperature,
+    /// `ε`.
+    averaging_offset,
+    /// Cross group per `z R`, `χ = c/k`, 1/(N·m).
+    cross_group,
+    /// Cross exponent `m`.
+    cross_exponent,
+    /// 1 with shear thinning, 0 without.
+    cross_on,
+    /// Payload weight `W2`, N.
+    weight,
+    /// `x = Wx/L`, N/m.
+    extraction,
+    /// Both bodies' mass `M`, kg.
+    total_mass,
+    /// `1/M`.
+    inverse_mass,
+    /// Payload's share of the mass at the start, `η0`.
+    payload_share,
+    /// `−dη/dl = x/(g M)`, 1/m.
+    share_slope,
+    /// Free lift `B − W1 − W2`, N.
+    free_lift,
+    /// `½ ρ_air CdA`, kg/m.
+    drag,
+    /// `1/C1`, K/J.
+    inverse_fluid_capacity,
+    /// `K12/C1`, 1/s.
+    fluid_rotor_1,
+    /// `K13/C1`, 1/s.
+    fluid_housing_1,
+    /// `K12/C2`, 1/s.
+    fluid_rotor_2,
+    /// `K23/C2`, 1/s.
+    rotor_housing_2,
+    /// `K13/C3`, 1/s.
+    fluid_housing_3,
+    /// `K23/C3`, 1/s.
+    rotor_housing_3,
+    /// `Ka/C3`, 1/s.
+    air_3,
+    /// Air temperature, K.
+    air_k,
+    /// Temperature at release, K.
+    initial_temperature,
+    /// Rise speed before release, m/s.
+    rise_speed,
+}
+
+impl Constants<f64> {
+    /// The constants of a descent, or nothing if they are impossible: not finite, or with the wrong sign
+    /// where the equations need one.
+    pub fn new(c: &Coefficients<f64>) -> Option<Self> {
+        let total_mass = c.balloon.moving_mass_kg + c.payload.weight_n / GRAVITY;
+        let heat = &c.thermal;
+        let (c1, c2, c3) = (
+            heat.fluid_capacity_j_per_k,
+            heat.rotor_capacity_j_per_k,
+            heat.housing_capacity_j_per_k,
+        );
+        let torque = c.fluid.torque_per_speed_nms;
+        let constants = Constants {
+            length: c.reel.line_length_m,
+            full_radius_squared: c.reel.full_radius_squared_m2,
+            radius_slope: c.reel.squared_radius_slope_m,
+            inertia: c.reel.inertia_kg_m2,
+            spool_pull: 0.5 * c.reel.inertia_kg_m2 * c.reel.squared_radius_slope_m,
+            torque,
+            inverse_torque: 1.0 / torque,
+            minus_viscosity_temperature: -c.fluid.viscosity_temperature_k,
+            averaging_offset: c.fluid.averaging_offset,
+            cross_group: if c.fluid.shear_thinning { c.fluid.cross_time_s / torque } else { 0.0 },
+            cross_exponent: if c.fluid.shear_thinning { c.fluid.cross_exponent } else { 0.5 },
+            cross_on: if c.fluid.shear_thinning { 1.0 } else { 0.0 },
+            weight: c.payload.weight_n,
+            extraction: c.payload.extraction_n_per_m,
+            total_mass,
+            inverse_mass: 1.0 / total_mass,
+            payload_share: c.payload.weight_n / GRAVITY / total_mass,
+            share_slope: c.payload.extraction_n_per_m / GRAVITY / total_mass,
+            free_lift: c.balloon.net_lift_n - c.payload.weight_n,
+            drag: c.balloon.drag_factor_kg_per_m,
+            inverse_fluid_capacity: 1.0 / c1,
+            fluid_rotor_1: heat.fluid_rotor_w_per_k / c1,
+            fluid_housing_1: heat.fluid_housing_w_per_k / c1,
+            fluid_rotor_2: heat.fluid_rotor_w_per_k / c2,
+            rotor_housing_2: heat.rotor_housing_w_per_k / c2,
+            fluid_housing_3: heat.fluid_housing_w_per_k / c3,
+            rotor_housing_3: heat.rotor_housing_w_per_k / c3,
+            air_3: heat.air_w_per_k / c3,
+            air_k: heat.air_k,
+            initial_temperature: c.initial_temperature_k,
+            rise_speed: c.balloon.rise_speed_m_per_s,
+        };
+        constants.possible(c).then_some(constants)
+    }
+
+    fn possible(&self, c: &Coefficients<f64>) -> bool {
+        let positive = [
+            self.length,
+            self.full_radius_squared,
+            self.full_radius_squared - self.radius_slope * self.length,
+            self.torque,
+            self.inverse_torque,
+            self.weight,
+            self.weight - self.extraction * self.length,
+            c.balloon.moving_mass_kg,
+            self.total_mass,
+            self.inverse_mass,
+            self.drag,
+            self.inverse_fluid_capacity,
+            heat_capacity_in_range(c.thermal.rotor_capacity_j_per_k),
+            heat_capacity_in_range(c.thermal.housing_capacity_j_per_k),
+            self.initial_temperature,
+            self.cross_exponent,
+        ];
+        let not_negative = [
+            self.inertia,
+            -self.minus_viscosity_temperature,
+            self.cross_group,
+            self.extraction,
+            self.fluid_rotor_1,
+            self.fluid_housing_1,
+            self.fluid_rotor_2,
+            self.rotor_housing_2,
+            self.fluid_housing_3,
+            self.rotor_housing_3,
+            self.air_3,
+        ];
+        let finite =
+            [self.averaging_offset, self.free_lift, self.air_k, self.rise_speed, self.spool_pull];
+        positive.iter().all(|value| value.is_finite() && *value > 0.0)
+            && not_negative.iter().all(|value| value.is_finite() && *value >= 0.0)
+            && finite.iter().all(|value| value.is_finite())
+    }
+}
+
+/// The capacity where its inverse is finite too, nothing (zero) elsewhere.
+fn heat_capacity_in_range(capacity: f64) -> f64 {
+    if (1.0 / capacity).is_finite() { capacity } else { 0.0 }
+}

@@ -1,0 +1,48 @@
+//! The vector integrator: many descents at once, one in each lane.
+
+mod clock;
+mod constants;
+mod dispatch;
+mod dynamic;
+mod kernel;
+mod model;
+mod observables;
+mod quasi_steady;
+pub mod rosenbrock;
+mod settings;
+mod thermal;
+
+pub use dispatch::InstructionSet;
+pub use settings::{Counts, Settings, default_tolerance};
+
+use super::model::Model;
+use super::outcome::{Fault, Outcome};
+use crate::physics::Coefficients;
+
+/// Integrates a batch of descents with the machine's best instruction set: `results[k]` is what becomes of
+/// `batch[k]`, and does not depend on anything else in the batch. Surplus entries of either are ignored.
+pub fn descend(
+    model: Model,
+    settings: &Settings,
+    batch: &[Coefficients<f64>],
+    results: &mut [Result<Outcome, Fault>],
+) -> Counts {
+    descend_with(InstructionSet::best(), model, settings, batch, results)
+}
+
+/// [`descend`] with an instruction set of the caller's choice; the bits are the same with every one.
+pub fn descend_with(
+    set: InstructionSet,
+    model: Model,
+    settings: &Settings,
+    batch: &[Coefficients<f64>],
+    results: &mut [Result<Outcome, Fault>],
+) -> Counts {
+    let count = batch.len().min(results.len());
+    dispatch::dispatch(set, model, settings, &batch[..count], &mut results[..count])
+}
+
+/// The instruction set that [`descend`] uses here.
+pub fn instruction_set() -> &'static str {
+    InstructionSet::best().name()
+}

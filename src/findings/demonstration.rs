@@ -1,0 +1,225 @@
+//! The verdict: is the requirement demonstrated?
+
+use super::CONFIDENCE;
+use crate::campaign::Record;
+use crate::error::Result;
+use crate::numerics::interval::Earned;
+use crate::reliability::demonstration::{Demonstration, Requirement, Verdict, minimum_samples};
+use crate::reliability::probability::Proportion;
+use crate::reliability::replicates::from_replicate_counts;
+use crate::study::Study;
+use serde::Serialize;
+
+/// How many rows the failures-allowed table has: 0 to 3 failures.
+const TABLE_ROWS: u64 = 4;
+
+/// The verdict in one word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum VerdictWord {
+    /// Demonstrated at the stated confidence.
+    Met,
+    /// The opposite is demonstrated.
+    NotMet,
+    /// Neither is demonstrated.
+    Undecided,
+    /// The study states no requirement.
+    NoRequirement,
+}
+
+/// What the verdict rests on.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Decision {
+    /// Exact binomial bounds on independent samples.
+    Counts(Box<Demonstration>),
+    /// The one-sided ends of Student's t over independent replicates.
+    Replicates {
+        /// Lower and upper bound of the probability of any breach, each at the requirement's confidence.
+        bounds: Earned,
+    },
+}
+
+/// The verdict and its evidence.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct VerdictFinding {
+    /// The word.
+    pub word: VerdictWord,
+    /// The verdict as a sentence or two.
+    pub statement: String,
+    /// Required reliability.
+    pub reliability: Option<f64>,
+    /// Confidence with which it must be demonstrated.
+    pub confidence: Option<f64>,
+    /// What the verdict rests on.
+    pub decision: Option<Decision>,
+    /// Clean samples and failures that would demonstrate the requirement: (failures, samples).
+    pub failures_allowed: Vec<(u64, u64)>,
+}
+
+/// A probability or share as a person reads it.
+pub(super) fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    match percent {
+        p if p == 0.0 => "0 %".to_owned(),
+        p if p >= 10.0 => format!("{p:.2} %"),
+        p if p >= 0.1 => format!("{p:.3} %"),
+        p if p >= 0.001 => format!("{p:.5} %"),
+        _ => format!("{share:.3e}"),
+    }
+}
+
+/// The verdict of a study's samples.
+pub(super) fn verdict(study: &Study, record: &Record) -> Result<VerdictFinding> {
+    let counts = record.counts().any();
+    let Some(stated) = study.requirement else {
+        let statement = no_requirement(study, &counts)?;
+        return Ok(VerdictFinding {
+            word: VerdictWord::NoRequirement,
+            statement,
+            reliability: None,
+            confidence: None,
+            decision: None,
+            failures_allowed: Vec::new(),
+        });
+    };
+    let requirement = Requirement::new(stated.reliability, stated.confidence)?;
+    let (word, decision, evidence) = if record.by_replicate().is_empty() {
+        by_counts(&requirement, &counts)?
+    } else {
+        by_replicates(&requirement, record)?
+    };
+    let allowed = percent(requirement.failure_limit());
+    let demand = format!(
+        "probability of any breach at most {allowed} (reliability {}) at {} confidence",
+        stated.reliability,
+        percent(stated.confidence)
+    );
+    let statement = match word {
+        VerdictWord::Met => format!("Requirement met: {demand} is demonstrated. {evidence}"),
+        VerdictWord::NotMet => {
+            format!(
+                "Requirement not met: {demand} is required, and the opposite is demonstrated. {evidence}"
+            )
+        }
+        _ => format!("Undecided: {demand} is neither demonstrated nor refuted. {evidence}"),
+    };
+    let failures_allowed = (0..TABLE_ROWS)
+        .map(|failures| {
+            minimum_samples(stated.reliability, stated.confidence, failures).map(|n| (failures, n))
+        })
+        .collect::<Result<_>>()?;
+    Ok(VerdictFinding {
+        word,
+        statement,
+        reliability: Some(stated.reliability),
+        confidence: Some(stated.confidence),
+        decision: Some(decision),
+        failures_allowed,
+    })
+}
+
+fn no_requirement(study: &Study, counts: &Proportion) -> Result<String> {
+    if study.limits.is_empty() {
+        return Ok("The study states no limit: there is nothing to breach.".to_owned());
+    }
+    let estimate = counts.estimate().map_or("unknown".to_owned(), percent);
+    let interval = counts.interval(CONFIDENCE)?;
+    let interval = match interval.interval() {
+        Some(i) => format!("{} to {}", percent(i.lower), percent(i.upper)),
+        None => "none".to_owned(),
+    };
+    Ok(format!(
+        "The study states no requirement. Any limit is breached with probability {estimate} \
+         (95 % interval {interval})."
+    ))
+}
+
+fn by_counts(
+    requirement: &Requirement,
+    counts: &Proportion,
+) -> Result<(VerdictWord, Decision, String)> {
+    let demonstration = requirement.verdict(counts)?;
+    let word = match demonstration.verdict {
+        Verdict::Met => VerdictWord::Met,
+        Verdict::NotMet => VerdictWord::NotMet,
+        Verdict::Undecided => VerdictWord::Undecided,
+    };
+    let seen = format!(
+        "{} of {} samples breached a limit{}",
+        counts.breaches,
+        counts.samples,
+        match counts.faults {
+            0 => String::new(),
+            faults => format!(" and {faults} could not be computed"),
+        }
+    );
+    let confidence = percent(requirement.confidence);
+    let end = |earned: &Earned, upper: bool| {
+        earned
+            .interval()
+            .map_or("unknown".to_owned(), |i| percent(if upper { i.upper } else { i.lower }))
+    };
+    let evidence = match demonstration.verdict {
+        Verdict::Met => format!(
+            "{seen}: the probability is at most {} with {confidence} confidence.",
+            end(&demonstration.upper_bound, true)
+        ),
+        Verdict::NotMet => format!(
+            "{seen}: the probability is at least {} with {confidence} confidence.",
+            end(&demonstration.lower_bound, false)
+        ),
+        Verdict::Undecided => format!(
+            "{seen}; {} more clean samples would demonstrate it.",
+            demonstration.clean_samples_needed
+        ),
+    };
+    Ok((word, Decision::Counts(Box::new(demonstration)), evidence))
+}
+
+/// Two one-sided bounds at C are the ends of a two-sided interval at 2 C − 1.
+fn by_replicates(
+    requirement: &Requirement,
+    record: &Record,
+) -> Result<(VerdictWord, Decision, String)> {
+    let limit = requirement.failure_limit();
+    let counts: Vec<Proportion> = record.by_replicate().iter().map(|c| c.any()).collect();
+    let both = 2.0 * requirement.confidence - 1.0;
+    let bounds = if both <= 0.0 {
+        Earned::none("a confidence of one half or less bounds nothing")
+    } else if counts.iter().any(|count| count.samples == 0) {
+        Earned::none("a replicate has no sample yet")
+    } else {
+        from_replicate_counts(&counts, both)?.probability.interval
+    };
+    let confidence = percent(requirement.confidence);
+    let (word, evidence) = match &bounds {
+        Earned::Interval(i) if i.upper <= limit => (
+            VerdictWord::Met,
+            format!(
+                "Over {} replicates the probability is at most {} with {confidence} confidence.",
+                counts.len(),
+                percent(i.upper)
+            ),
+        ),
+        Earned::Interval(i) if i.lower > limit => (
+            VerdictWord::NotMet,
+            format!(
+                "Over {} replicates the probability is at least {} with {confidence} confidence.",
+                counts.len(),
+                percent(i.lower)
+            ),
+        ),
+        Earned::Interval(i) => (
+            VerdictWord::Undecided,
+            format!(
+                "Over {} replicates the probability lies between {} and {}, each end at {confidence} confidence.",
+                counts.len(),
+                percent(i.lower),
+                percent(i.upper)
+            ),
+        ),
+        Earned::None(why) => (VerdictWord::Undecided, format!("No interval: {why}.")),
+    };
+    Ok((word, Decision::Replicates { bounds }, evidence))
+}

@@ -1,0 +1,168 @@
+//! What drives the outcomes and the breaches: Sobol' indices from the pick-freeze design.
+
+use super::CONFIDENCE;
+use crate::campaign::{PickFreezeOutcomes, in_parallel};
+use crate::descent::OutcomeQuantity;
+use crate::error::Result;
+use crate::sensitivity::bootstrap::Resampling;
+use crate::sensitivity::sobol_indices::{FactorIndices, sobol_indices};
+use crate::study::Study;
+use serde::Serialize;
+
+/// The drivers of every outcome and every breach.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DriversFinding {
+    /// Why there are none.
+    pub none: Option<String>,
+    /// Rows of each block of the design.
+    pub base_samples: usize,
+    /// Descents spent.
+    pub descents: u64,
+    /// Descents that could not be computed.
+    pub faults: u64,
+    /// One entry an outcome, then one a breach event.
+    pub outputs: Vec<DriverOutput>,
+}
+
+/// The drivers of one output.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DriverOutput {
+    /// The output: an outcome's name, `breach.time`, `breach.any`.
+    pub name: String,
+    /// The output in words.
+    pub title: String,
+    /// Whether it is a breach indicator.
+    pub breach: bool,
+    /// Mean of the output.
+    pub mean: Option<f64>,
+    /// Variance of the output.
+    pub variance: Option<f64>,
+    /// One entry a factor.
+    pub factors: Vec<FactorFinding>,
+}
+
+/// One factor's share in one output.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FactorFinding {
+    /// Path of the input, or name of the group.
+    pub name: String,
+    /// How many inputs it is.
+    pub inputs: usize,
+    /// Whether it belongs to a group that is listed as a factor of its own.
+    pub grouped: bool,
+    /// The indices.
+    #[serde(flatten)]
+    pub indices: FactorIndices,
+}
+
+/// The drivers of a study, or why there are none.
+pub(super) fn drivers(
+    study: &Study,
+    pick_freeze: &std::result::Result<PickFreezeOutcomes, String>,
+) -> Result<DriversFinding> {
+    let design = match pick_freeze {
+        Ok(design) => design,
+        Err(why) => {
+            return Ok(DriversFinding {
+                none: Some(why.clone()),
+                base_samples: 0,
+                descents: 0,
+                faults: 0,
+                outputs: Vec::new(),
+            });
+        }
+    };
+    let rows = design.plan.base_samples();
+    let replicates = study.sensitivity.bootstrap as usize;
+    let resampling = Resampling::new(study.sampling.seed, rows, replicates)?;
+    let outputs = in_parallel(&outputs(study), |output| {
+        let blocks = output.values(study, design);
+        let blocks: Vec<&[f64]> = blocks.iter().map(Vec::as_slice).collect();
+        let indices = sobol_indices(&design.plan, &blocks, &resampling, CONFIDENCE)?;
+        let factors = design.plan.factors().iter().zip(indices.factors);
+        let grouped = |columns: &[usize]| {
+            design.plan.factors().iter().any(|other| {
+                other.columns.len() > columns.len()
+                    && columns.iter().all(|column| other.columns.contains(column))
+            })
+        };
+        Ok(DriverOutput {
+            name: output.name(study),
+            title: output.title(study),
+            breach: !matches!(output, Output::Outcome(_)),
+            mean: indices.mean,
+            variance: indices.variance,
+            factors: factors
+                .map(|(factor, indices)| FactorFinding {
+                    name: factor.name.clone(),
+                    inputs: factor.columns.len(),
+                    grouped: grouped(&factor.columns),
+                    indices,
+                })
+                .collect(),
+        })
+    });
+    Ok(DriversFinding {
+        none: None,
+        base_samples: rows,
+        descents: design.plan.points(),
+        faults: design.faults,
+        outputs: outputs.into_iter().collect::<Result<_>>()?,
+    })
+}
+
+/// Something whose drivers are asked for.
+#[derive(Debug, Clone, Copy)]
+enum Output {
+    Outcome(OutcomeQuantity),
+    Breach(usize),
+    AnyBreach,
+}
+
+fn outputs(study: &Study) -> Vec<Output> {
+    let outcomes = OutcomeQuantity::ALL.into_iter().map(Output::Outcome);
+    let breaches = (0..study.limits.len()).map(Output::Breach);
+    let any = (!study.limits.is_empty()).then_some(Output::AnyBreach);
+    outcomes.chain(breaches).chain(any).collect()
+}
+
+impl Output {
+    fn name(self, study: &Study) -> String {
+        match self {
+            Output::Outcome(quantity) => quantity.name().to_owned(),
+            Output::Breach(i) => format!("breach.{}", study.limits[i].name()),
+            Output::AnyBreach => "breach.any".to_owned(),
+        }
+    }
+
+    fn title(self, study: &Study) -> String {
+        match self {
+            Output::Outcome(quantity) => quantity.title().to_owned(),
+            Output::Breach(i) => format!("breach of {}", study.limits[i].outcome.title()),
+            Output::AnyBreach => "breach of any limit".to_owned(),
+        }
+    }
+
+    fn values(self, study: &Study, design: &PickFreezeOutcomes) -> Vec<Vec<f64>> {
+        let indicator = |margin: f64| match margin {
+            m if m.is_nan() => f64::NAN,
+            m if m < 0.0 => 1.0,
+            _ => 0.0,
+        };
+        match self {
+            Output::Outcome(quantity) => design.map(|row| row(quantity)),
+            Output::Breach(i) => {
+                let limit = &study.limits[i];
+                design.map(|row| indicator(limit.margin_of(row(limit.outcome))))
+            }
+            Output::AnyBreach => design.map(|row| {
+                let margins = study.limits.iter().map(|limit| limit.margin_of(row(limit.outcome)));
+                // A known breach decides; otherwise one unknown margin leaves the row unknown.
+                margins.map(indicator).fold(0.0, |any: f64, one| match (any, one) {
+                    (1.0, _) | (_, 1.0) => 1.0,
+                    (any, one) => any + one,
+                })
+            }),
+        }
+    }
+}

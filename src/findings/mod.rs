@@ -1,0 +1,248 @@
+//! Everything a report says, computed once, as one tree that serialises: what the Markdown shows, the
+//! JSON holds. Numbers are SI; the renderer chooses units.
+
+mod demonstration;
+mod drivers;
+mod inputs;
+mod margins;
+mod probabilities;
+
+use crate::campaign::{self, PickFreezeOutcomes, Record};
+use crate::descent::{Fault, Outcome, OutcomeQuantity};
+use crate::error::Result;
+use crate::study::Study;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+pub use demonstration::{Decision, VerdictFinding, VerdictWord};
+pub use drivers::{DriverOutput, DriversFinding, FactorFinding};
+pub use inputs::InputFinding;
+pub use margins::{MarginFinding, MarginQuantile};
+pub use probabilities::{EventKind, ProbabilityFinding};
+
+/// Confidence of the two-sided intervals.
+pub const CONFIDENCE: f64 = 0.95;
+
+/// The whole answer to a study.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Findings {
+    /// Layout of this tree; a reader checks it before anything else.
+    pub format: u32,
+    /// The study's title.
+    pub title: String,
+    /// The verdict, first.
+    pub verdict: VerdictFinding,
+    /// Each limit, any limit, each pair.
+    pub probabilities: Vec<ProbabilityFinding>,
+    /// What margin is left, by limit.
+    pub margins: Vec<MarginFinding>,
+    /// The spread of every outcome.
+    pub outcomes: Vec<OutcomeFinding>,
+    /// The nominal descent.
+    pub nominal: NominalFinding,
+    /// What drives the outcomes and the breaches.
+    pub drivers: DriversFinding,
+    /// Samples that did not deploy or could not be computed.
+    pub exceptions: ExceptionFinding,
+    /// What is uncertain.
+    pub inputs: Vec<InputFinding>,
+    /// How the numbers were obtained, and what they do not say.
+    pub method: MethodFinding,
+    /// What it takes to have the same numbers again.
+    pub reproduction: ReproductionFinding,
+}
+
+/// The spread of one outcome over the samples, SI.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OutcomeFinding {
+    /// Name in study files.
+    pub name: &'static str,
+    /// Parquet column, with the unit.
+    pub column: String,
+    /// Samples behind the numbers.
+    pub samples: u64,
+    /// Mean.
+    pub mean: Option<f64>,
+    /// Standard deviation.
+    pub standard_deviation: Option<f64>,
+    /// Smallest value.
+    pub smallest: Option<f64>,
+    /// Largest value.
+    pub largest: Option<f64>,
+}
+
+/// The nominal descent: every input at its nominal value.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NominalFinding {
+    /// Whether the line ran out; `None` if the descent could not be computed.
+    pub deployed: Option<bool>,
+    /// Outcomes by column name, SI.
+    pub outcomes: BTreeMap<String, f64>,
+    /// Names of the limits that it breaches.
+    pub breaches: Vec<String>,
+    /// Why it could not be computed.
+    pub fault: Option<&'static str>,
+}
+
+/// Samples that are counted and shown apart.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExceptionFinding {
+    /// Samples that had not deployed at the time limit of a descent.
+    pub not_deployed: u64,
+    /// Samples that could not be computed.
+    pub faulted: u64,
+    /// Faults by kind.
+    pub faults: Vec<(&'static str, u64)>,
+    /// The first faulted samples: index and kind.
+    pub first_faulted: Vec<(u64, &'static str)>,
+}
+
+/// How the numbers were obtained.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MethodFinding {
+    /// The model of the motion.
+    pub model: &'static str,
+    /// The design of experiment in words.
+    pub design: String,
+    /// Descents in the main design.
+    pub samples: u64,
+    /// Independent replicates of the design.
+    pub replicates: u32,
+    /// Relative accuracy asked of the integrator.
+    pub tolerance: f64,
+    /// What a reader must know before leaning on a number.
+    pub caveats: Vec<String>,
+}
+
+/// What it takes to have the same numbers again.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReproductionFinding {
+    /// Version of this program.
+    pub version: &'static str,
+    /// Seed of every stream.
+    pub seed: u64,
+    /// SHA-256 of the resolved study.
+    pub study_digest: String,
+    /// Name and SHA-256 of the study file and each card.
+    pub files: Vec<(String, String)>,
+    /// The command.
+    pub command: String,
+}
+
+/// What the findings are made from.
+#[derive(Debug)]
+pub struct Evidence<'a> {
+    /// The study.
+    pub study: &'a Study,
+    /// Its samples.
+    pub record: &'a Record,
+    /// Its nominal descent.
+    pub nominal: std::result::Result<Outcome, Fault>,
+    /// Its pick-freeze design, or why there is none.
+    pub pick_freeze: std::result::Result<PickFreezeOutcomes, String>,
+    /// The command that was given, to be given again.
+    pub command: String,
+}
+
+/// Computes the findings.
+///
+/// # Errors
+/// If the study's numbers are such that a statistic refuses them (a confidence of 1, say).
+pub fn gather(evidence: &Evidence) -> Result<Findings> {
+    let Evidence { study, record, .. } = *evidence;
+    let sampler = campaign::sampler(study)?;
+    Ok(Findings {
+        format: 1,
+        title: study.title.clone(),
+        verdict: demonstration::verdict(study, record)?,
+        probabilities: probabilities::probabilities(study, record)?,
+        margins: margins::margins(study, record)?,
+        outcomes: OutcomeQuantity::ALL.map(|quantity| outcome(record, quantity)).to_vec(),
+        nominal: nominal(study, &evidence.nominal),
+        drivers: drivers::drivers(study, &evidence.pick_freeze)?,
+        exceptions: exceptions(record),
+        inputs: inputs::inputs(study),
+        method: MethodFinding {
+            model: study.model.name(),
+            design: sampler.describe(),
+            samples: record.counts().samples(),
+            replicates: sampler.replicates(),
+            tolerance: study.numerics.tolerance,
+            caveats: caveats(study, sampler.advice()),
+        },
+        reproduction: ReproductionFinding {
+            version: env!("CARGO_PKG_VERSION"),
+            seed: study.sampling.seed,
+            study_digest: study.digest(),
+            files: study.file_digests(),
+            command: evidence.command.clone(),
+        },
+    })
+}
+
+fn outcome(record: &Record, quantity: OutcomeQuantity) -> OutcomeFinding {
+    let summary = record.summary(quantity);
+    let any = |value: f64| (summary.samples > 0).then_some(value);
+    OutcomeFinding {
+        name: quantity.name(),
+        column: quantity.column(),
+        samples: summary.samples,
+        mean: any(summary.mean),
+        standard_deviation: summary.standard_deviation(),
+        smallest: any(summary.smallest),
+        largest: any(summary.largest),
+    }
+}
+
+fn nominal(study: &Study, nominal: &std::result::Result<Outcome, Fault>) -> NominalFinding {
+    match nominal {
+        Ok(outcome) => NominalFinding {
+            deployed: Some(outcome.deployed),
+            outcomes: OutcomeQuantity::ALL
+                .into_iter()
+                .map(|quantity| (quantity.column(), outcome.get(quantity)))
+                .collect(),
+            breaches: study
+                .limits
+                .iter()
+                .filter(|limit| limit.margin(outcome) < 0.0)
+                .map(|limit| limit.name())
+                .collect(),
+            fault: None,
+        },
+        Err(fault) => NominalFinding {
+            deployed: None,
+            outcomes: BTreeMap::new(),
+            breaches: Vec::new(),
+            fault: Some(fault.name()),
+        },
+    }
+}
+
+fn exceptions(record: &Record) -> ExceptionFinding {
+    ExceptionFinding {
+        not_deployed: record.not_deployed(),
+        faulted: record.fault_counts().iter().map(|(_, count)| count).sum(),
+        faults: record.fault_counts().iter().map(|(fault, count)| (fault.name(), *count)).collect(),
+        first_faulted: record.faulted().iter().map(|s| (s.index, s.fault.name())).collect(),
+    }
+}
+
+fn caveats(study: &Study, advice: Option<String>) -> Vec<String> {
+    let mut caveats = vec![
+        "The probabilities are of the model, with the laws of the card: a width that is assumed in the \
+         card is assumed in every number here."
+            .to_owned(),
+        "The intervals hold the sampling error only, not the error of the model or of the card.".to_owned(),
+    ];
+    if study.sampling.design.is_replicated() {
+        caveats.push(
+            "The points of this design are not independent: intervals come from its replicates \
+             (Student's t), and exact binomial ones do not apply."
+                .to_owned(),
+        );
+    }
+    caveats.extend(study.notes.iter().cloned());
+    caveats.extend(advice);
+    caveats
+}

@@ -1,0 +1,139 @@
+//! Whether several methods' answers to one question can all be true.
+//!
+//! Two estimates with intervals differ by more than their errors allow when the interval of their
+//! difference excludes zero. That interval is recovered from the two (MOVER): its lower end is
+//! `d − √((p₁ − l₁)² + (u₂ − p₂)²)` for d = p₁ − p₂ > 0, which respects intervals that are not
+//! symmetric and a crude run that saw nothing.
+//!
+//! Source: Zou and Donner, Statistics in Medicine 27 (2008) 1693.
+
+use super::estimate::{Estimate, Method};
+use crate::error::{Error, Result};
+use crate::numerics::special::normal;
+use serde::Serialize;
+
+/// One pair of estimates compared.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Comparison {
+    /// The two methods.
+    pub methods: (Method, Method),
+    /// Their estimates.
+    pub probabilities: (f64, f64),
+    /// Difference over the reach of the combined errors at the family's risk: above 1 they disagree.
+    pub difference: f64,
+    /// Whether their errors allow the difference.
+    pub agree: bool,
+}
+
+/// The check of all pairs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Agreement {
+    /// Whether every pair that could be compared agrees; none without a pair.
+    pub agrees: Option<bool>,
+    /// The pairs.
+    pub comparisons: Vec<Comparison>,
+    /// Methods that could not be compared, and why.
+    pub left_out: Vec<(Method, String)>,
+}
+
+/// Compares the estimates pair by pair at a family risk: the probability that methods which are all
+/// right are said to disagree.
+///
+/// # Errors
+/// If the risk is not strictly between 0 and 1, or the estimates are of different events.
+pub fn agreement(estimates: &[Estimate], family_risk: f64) -> Result<Agreement> {
+    if !(0.0 < family_risk && family_risk < 1.0) {
+        return Err(Error::argument(format!("{family_risk} is not a risk between 0 and 1")));
+    }
+    if estimates.windows(2).any(|pair| pair[0].event != pair[1].event) {
+        return Err(Error::argument("estimates of different events cannot agree or disagree"));
+    }
+    let mut left_out = Vec::new();
+    let mut sides = Vec::new();
+    for estimate in estimates {
+        match (estimate.probability, estimate.interval.interval()) {
+            (Some(p), Some(interval)) => {
+                let z = normal::quantile_upper((1.0 - interval.confidence) / 2.0);
+                // With faults the point is a range: whatever lies in it is not a difference.
+                let most = estimate.probability_with_faults.unwrap_or(p).max(p);
+                let below = (p - interval.lower).max(0.0) / z;
+                let above = (interval.upper - most).max(0.0) / z;
+                sides.push(Side { method: estimate.method, least: p, most, below, above });
+            }
+            (None, _) => left_out.push((estimate.method, "no number".to_owned())),
+            (_, None) => {
+                let why = estimate.interval.why_none().unwrap_or("no interval");
+                left_out.push((estimate.method, why.to_owned()));
+            }
+        }
+    }
+    let pairs = sides.len() * sides.len().saturating_sub(1) / 2;
+    let z = normal::quantile_upper(family_risk / (2.0 * (pairs.max(1)) as f64));
+    let mut comparisons = Vec::with_capacity(pairs);
+    for (k, one) in sides.iter().enumerate() {
+        for other in &sides[k + 1..] {
+            comparisons.push(one.compared_with(other, z));
+        }
+    }
+    let agrees = (pairs > 0).then(|| comparisons.iter().all(|comparison| comparison.agree));
+    Ok(Agreement { agrees, comparisons, left_out })
+}
+
+/// An estimate with one standard error below and one above.
+struct Side {
+    method: Method,
+    least: f64,
+    most: f64,
+    below: f64,
+    above: f64,
+}
+
+impl Side {
+    fn compared_with(&self, other: &Side, z: f64) -> Comparison {
+        let (high, low) = if self.least >= other.least { (self, other) } else { (other, self) };
+        let gap = (high.least - low.most).max(0.0);
+        let reach = z * (high.below * high.below + low.above * low.above).sqrt();
+        let difference = match (gap > 0.0, reach > 0.0) {
+            (false, _) => 0.0,
+            (true, true) => gap / reach,
+            (true, false) => f64::INFINITY,
+        };
+        Comparison {
+            methods: (self.method, other.method),
+            probabilities: (self.least, other.least),
+            difference,
+            agree: difference <= 1.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::interval::{Earned, Interval};
+    use crate::reliability::event::Event;
+
+    fn estimate(method: Method, p: f64, ends: Option<(f64, f64)>) -> Estimate {
+        let mut estimate = Estimate::without_number(method, Event::Any, "nothing");
+        estimate.probability = Some(p);
+        if let Some((lower, upper)) = ends {
+            let interval = Interval { lower, upper, confidence: 0.95, method: "test" };
+            estimate.interval = Earned::from(interval);
+        }
+        estimate
+    }
+
+    #[test]
+    fn property_wide_errors_agree_and_narrow_ones_do_not() {
+        let importance = estimate(Method::ImportanceSampling, 3.2e-5, Some((3.0e-5, 3.4e-5)));
+        let subset = estimate(Method::SubsetSimulation, 2.9e-7, Some((2.0e-7, 4.0e-7)));
+        let nothing = estimate(Method::CrudeMonteCarlo, 0.0, Some((0.0, 3.7e-5)));
+        let form = estimate(Method::Form, 1.0, None);
+        let check = |estimates: &[Estimate]| agreement(estimates, 0.01).unwrap();
+        assert_eq!(check(&[importance.clone(), subset.clone()]).agrees, Some(false));
+        assert_eq!(check(&[importance.clone(), nothing.clone()]).agrees, Some(true));
+        let all = check(&[importance, form, subset, nothing]);
+        assert_eq!((all.agrees, all.comparisons.len(), all.left_out.len()), (Some(false), 3, 1));
+        assert_eq!(check(&[]).agrees, None);
+    }
+}

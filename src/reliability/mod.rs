@@ -1,0 +1,28 @@
+//! The sciences of breach probability: what counts of breaches show, and how to find rare breaches.
+//!
+//! Nothing here has heard of brakes. Counts, sorted margins and limit states come in; estimates with
+//! the intervals that they earned, or the reason why there is none, go out.
+
+// What counts and sorted margins show.
+pub mod binomial_tails;
+pub mod breach_counts;
+pub mod demonstration;
+pub mod normal_tolerance;
+pub mod probability;
+pub mod quantiles;
+pub mod replicates;
+
+// Limit states in standard-normal space and the methods that walk them.
+pub mod design_point;
+pub mod draws;
+pub mod estimate;
+pub mod event;
+pub mod form;
+pub mod importance;
+pub mod limit_state;
+pub mod linearisation;
+pub mod log_replicates;
+pub mod quasi_newton;
+pub mod subset;
+pub mod vectors;
+pub mod weighted;

@@ -1,0 +1,200 @@
+//! From weighted breaches to an estimate: the self-checks of importance sampling.
+//!
+//! A breach found far from where the sampling density expected it carries a large weight. When a few
+//! such weights make the sum, their variance is not the variance of what was not seen, and the interval
+//! is withdrawn.
+
+use crate::numerics::elementary::{exp, ln, ln_1p};
+use crate::numerics::interval::{Earned, Interval};
+use crate::numerics::special::normal;
+
+/// The limits of the self-checks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WeightChecks {
+    /// Least effective number of weighted breaches, (Σw)²/Σw².
+    pub effective_breaches: f64,
+    /// Largest share of the sum that one breach may carry.
+    pub largest_share: f64,
+    /// Largest tail index (generalised Pareto shape) of the weights.
+    pub tail_index: f64,
+}
+
+impl Default for WeightChecks {
+    fn default() -> Self {
+        WeightChecks { effective_breaches: 100.0, largest_share: 0.05, tail_index: 0.7 }
+    }
+}
+
+/// Weights p/q of the breaches among `samples` independent draws; the rest weigh zero.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct WeightedBreaches {
+    /// Draws, breaches or not.
+    pub samples: u64,
+    /// The weight of each breach.
+    pub weights: Vec<f64>,
+}
+
+/// What the weights say.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WeightSummary {
+    /// The estimate, Σw/N.
+    pub probability: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+    /// Effective number of breaches, (Σw)²/Σw².
+    pub effective_breaches: f64,
+    /// Largest single share of Σw.
+    pub largest_share: f64,
+    /// Shape of the generalised Pareto law of the largest weights, where there are enough.
+    pub tail_index: Option<f64>,
+    /// The interval, or which check withdrew it.
+    pub interval: Earned,
+}
+
+impl WeightedBreaches {
+    /// Estimate, error and interval at `confidence`.
+    ///
+    /// The interval is symmetric for the logarithm of the estimate: its error is right-skewed, and the
+    /// standard error grows with the estimate.
+    pub fn summary(&self, confidence: f64, checks: &WeightChecks) -> WeightSummary {
+        let n = self.samples as f64;
+        let sum: f64 = self.weights.iter().sum();
+        let squares: f64 = self.weights.iter().map(|w| w * w).sum();
+        let probability = if n > 0.0 { sum / n } else { 0.0 };
+        let variance = (squares / n - probability * probability).max(0.0) / (n - 1.0).max(1.0);
+        let standard_error = variance.sqrt();
+        let effective_breaches = if squares > 0.0 { sum * sum / squares } else { 0.0 };
+        let largest = self.weights.iter().copied().fold(0.0, f64::max);
+        let largest_share = if sum > 0.0 { largest / sum } else { 0.0 };
+        let tail_index = tail_index(&self.weights);
+        let withdrawn = if self.weights.is_empty() {
+            Some("no breach was sampled".to_owned())
+        } else if effective_breaches < checks.effective_breaches {
+            Some(format!(
+                "effective number of breaches {effective_breaches:.0} is below {:.0}",
+                checks.effective_breaches
+            ))
+        } else if largest_share > checks.largest_share {
+            Some(format!("one sample carries {:.1} % of the estimate", 100.0 * largest_share))
+        } else {
+            tail_index.filter(|&k| k > checks.tail_index).map(|k| {
+                format!("the weights' tail index {k:.2} is above {:.2}", checks.tail_index)
+            })
+        };
+        let interval = match withdrawn {
+            Some(why) => Earned::none(why),
+            None => log_interval(
+                probability,
+                standard_error,
+                normal::quantile_upper((1.0 - confidence) / 2.0),
+                confidence,
+                "weights, logarithmic normal",
+            )
+            .into(),
+        };
+        WeightSummary {
+            probability,
+            standard_error,
+            effective_breaches,
+            largest_share,
+            tail_index,
+            interval,
+        }
+    }
+}
+
+/// The interval `p exp(± z s/p)`, its upper end at most 1.
+pub fn log_interval(
+    probability: f64,
+    standard_error: f64,
+    z: f64,
+    confidence: f64,
+    method: &'static str,
+) -> Interval {
+    let factor = exp(z * standard_error / probability);
+    Interval {
+        lower: probability / factor,
+        upper: (probability * factor).min(1.0),
+        confidence,
+        method,
+    }
+}
+
+/// Shape of the generalised Pareto law of the largest fifth of the weights (at most 3√n of them); none
+/// for fewer than 25 weights or where the largest are all equal.
+///
+/// Sources: Zhang and Stephens, Technometrics 51 (2009) 316, for the estimator; Vehtari, Simpson,
+/// Gelman, Yao and Gabry, "Pareto smoothed importance sampling" (2024), for its use and its weak prior.
+pub fn tail_index(weights: &[f64]) -> Option<f64> {
+    let mut sorted: Vec<f64> = weights.iter().copied().filter(|w| w.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let n = sorted.len();
+    let tail = (n / 5).min((3.0 * (n as f64).sqrt()) as usize);
+    if tail < 5 {
+        return None;
+    }
+    let cutoff = sorted[n - tail - 1];
+    let excess: Vec<f64> = sorted[n - tail..].iter().map(|w| w - cutoff).collect();
+    let (m, largest) = (tail as f64, excess[tail - 1]);
+    let quartile = excess[((m / 4.0 + 0.5) as usize).max(1) - 1];
+    if quartile <= 0.0 || largest <= 0.0 {
+        return None;
+    }
+    let grid = 30 + m.sqrt() as usize;
+    let mean_log = |theta: f64| excess.iter().map(|x| ln_1p(-theta * x)).sum::<f64>() / m;
+    let thetas: Vec<f64> = (1..=grid)
+        .map(|j| {
+            let step = 1.0 - (grid as f64 / (j as f64 - 0.5)).sqrt();
+            1.0 / largest + step / (3.0 * quartile)
+        })
+        .collect();
+    let profile: Vec<f64> = thetas
+        .iter()
+        .map(|&theta| {
+            let shape = mean_log(theta);
+            m * (ln(-theta / shape) - shape - 1.0)
+        })
+        .collect();
+    let mut theta = 0.0;
+    for (&candidate, &own) in thetas.iter().zip(&profile) {
+        theta += candidate / profile.iter().map(|&other| exp(other - own)).sum::<f64>();
+    }
+    let shape = mean_log(theta);
+    shape.is_finite().then(|| (shape * m + 5.0) / (m + 10.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn analytic_tail_index_of_pareto_quantiles() {
+        // Quantiles of a Pareto law of shape k are u^-k; the estimator shrinks towards ½ by 10/(m + 10).
+        for shape in [0.2, 0.7, 1.0] {
+            let weights: Vec<f64> =
+                (1..=20_000).map(|k| exp(-shape * ln((k as f64 - 0.5) / 20_000.0))).collect();
+            let found = tail_index(&weights).unwrap();
+            assert!((found - shape).abs() < 0.05, "{found} for {shape}");
+        }
+    }
+
+    #[test]
+    fn analytic_equal_weights_are_a_binomial_share() {
+        let breaches = WeightedBreaches { samples: 10_000, weights: vec![1.0; 400] };
+        let summary = breaches.summary(0.95, &WeightChecks::default());
+        assert_eq!(summary.probability, 0.04);
+        assert!((summary.standard_error - (0.04_f64 * 0.96 / 9999.0).sqrt()).abs() < 1e-15);
+        assert!((summary.effective_breaches - 400.0).abs() < 1e-9);
+        assert!(summary.interval.interval().unwrap().contains(0.04));
+    }
+
+    #[test]
+    fn property_a_dominating_weight_withdraws_the_interval() {
+        let mut weights = vec![1.0; 1000];
+        weights.push(300.0);
+        let breaches = WeightedBreaches { samples: 10_000, weights };
+        assert!(breaches.summary(0.95, &WeightChecks::default()).interval.interval().is_none());
+        let none = WeightedBreaches { samples: 10, weights: Vec::new() };
+        assert!(none.summary(0.95, &WeightChecks::default()).interval.why_none().is_some());
+    }
+}

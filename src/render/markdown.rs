@@ -1,0 +1,39 @@
+//! The report as Markdown, laid out by the template in `reports/templates/report.md`.
+
+use super::view::view;
+use crate::error::{Error, Result};
+use crate::findings::Findings;
+use minijinja::Environment;
+
+const TEMPLATE: &str = include_str!("../../reports/templates/report.md");
+
+/// The report as Markdown.
+///
+/// # Errors
+/// If the template is at fault: a mistake of this program's, which its tests would have shown.
+pub fn markdown(findings: &Findings) -> Result<String> {
+    let broken = |reason: minijinja::Error| {
+        Error::argument(format!("the report template cannot be filled in: {reason:#}"))
+    };
+    let mut environment = Environment::new();
+    environment.add_template("report.md", TEMPLATE).map_err(broken)?;
+    let text = environment
+        .get_template("report.md")
+        .and_then(|template| template.render(minijinja::value::Serde(view(findings))))
+        .map_err(broken)?;
+    Ok(tidy(&text))
+}
+
+/// One blank line where the template left several, and one newline at the end.
+fn tidy(text: &str) -> String {
+    let mut tidied = String::with_capacity(text.len());
+    let mut blank = false;
+    for line in text.lines().map(str::trim_end) {
+        if !(line.is_empty() && blank) {
+            tidied.push_str(line);
+            tidied.push('\n');
+        }
+        blank = line.is_empty();
+    }
+    format!("{}\n", tidied.trim_end())
+}

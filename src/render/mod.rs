@@ -1,0 +1,11 @@
+//! Findings as text: a terminal summary and a Markdown report. Returns strings; writes and prints nothing.
+
+mod figures_of_speech;
+mod markdown;
+mod tables;
+mod terminal;
+mod view;
+
+pub use markdown::markdown;
+pub use tables::table;
+pub use terminal::{Style, terminal};

@@ -1,0 +1,88 @@
+//! The verdict and the probabilities for a terminal.
+
+use super::tables::table;
+use super::view::view;
+use crate::findings::{Findings, VerdictWord};
+
+/// Whether escape sequences are wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Style {
+    /// Text only.
+    Plain,
+    /// Colour and weight.
+    Colour,
+}
+
+impl Style {
+    fn paint(self, text: &str, code: &str) -> String {
+        match self {
+            Style::Plain => text.to_owned(),
+            Style::Colour => format!("\x1b[{code}m{text}\x1b[0m"),
+        }
+    }
+}
+
+/// Drivers shown on a terminal.
+const SHOWN_DRIVERS: usize = 5;
+
+/// Widest line of running text.
+const WIDTH: usize = 100;
+
+/// The summary that ends a run.
+pub fn terminal(findings: &Findings, style: Style) -> String {
+    let view = view(findings);
+    let colour = match findings.verdict.word {
+        VerdictWord::Met => "1;32",
+        VerdictWord::NotMet => "1;31",
+        VerdictWord::Undecided => "1;33",
+        VerdictWord::NoRequirement => "1",
+    };
+    let mut text = format!("{}\n\n", style.paint(&view.title, "1"));
+    let heading = style.paint(view.verdict.heading.trim_end_matches('.'), colour);
+    text += &format!("{heading}\n{}\n", wrapped(&view.verdict.statement));
+    if let Some(sharpest) = &view.verdict.sharpest {
+        text += &format!("{}\n", wrapped(&sharpest.replace('`', "")));
+    }
+    if !view.probabilities.is_empty() {
+        let interval = format!("{} interval", view.interval_label);
+        let header = ["event", "breaches", "probability", &interval];
+        let rows = view.probabilities.iter().filter(|row| !row.pair).map(|row| {
+            [&row.title, &row.counts, &row.probability, &row.interval].map(String::clone)
+        });
+        text += &format!("\n{}\n", table(&header, 1..4, rows, None));
+    }
+    for statement in &view.statements {
+        text += &format!("{}\n", wrapped(statement));
+    }
+    if let Some(output) = view.drivers.outputs.first().filter(|output| !output.rows.is_empty()) {
+        let header = [&format!("drivers of {}", output.title), "alone", "with interactions"];
+        let rows = output
+            .rows
+            .iter()
+            .take(SHOWN_DRIVERS)
+            .map(|row| [row.name.replace('`', ""), row.first.clone(), row.total.clone()]);
+        text += &format!("\n{}\n", table(&header, 1..3, rows, None));
+    } else if let Some(why) = &view.drivers.none {
+        text += &format!("\n{}\n", wrapped(&format!("No sensitivity indices: {why}.")));
+    }
+    if findings.exceptions.not_deployed + findings.exceptions.faulted > 0 {
+        for line in &view.exceptions {
+            text += &format!("{}\n", wrapped(line));
+        }
+    }
+    text
+}
+
+fn wrapped(text: &str) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= WIDTH => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines.join("\n")
+}

@@ -1,0 +1,430 @@
+//! The findings in a reader's words and units: what every textual rendering is laid out from.
+
+use super::figures_of_speech::{
+    bare, count, maybe, probability, probability_interval, upper_end, value, value_interval,
+};
+use crate::descent::OutcomeQuantity;
+use crate::findings::{
+    CONFIDENCE, Decision, DriverOutput, EventKind, FactorFinding, Findings, MarginFinding,
+    VerdictWord,
+};
+use crate::numerics::interval::Estimate;
+use crate::units::Quantity;
+use serde::Serialize;
+
+/// How many factors a table of drivers shows.
+const SHOWN_FACTORS: usize = 8;
+
+/// A report, ready to be laid out.
+#[derive(Debug, Serialize)]
+pub(super) struct View {
+    pub title: String,
+    pub verdict: Verdict,
+    pub interval_label: String,
+    pub bound_label: String,
+    pub probabilities: Vec<ProbabilityRow>,
+    pub statements: Vec<String>,
+    pub demonstration: Option<Demonstration>,
+    pub margins: Vec<Margin>,
+    pub drivers: Drivers,
+    pub nominal: String,
+    pub outcomes: Vec<OutcomeRow>,
+    pub exceptions: Vec<String>,
+    pub inputs: Vec<InputRow>,
+    pub method: Method,
+    pub reproduction: Reproduction,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct Verdict {
+    pub heading: &'static str,
+    pub statement: String,
+    pub sharpest: Option<String>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct ProbabilityRow {
+    pub title: String,
+    pub pair: bool,
+    pub counts: String,
+    pub probability: String,
+    pub interval: String,
+    pub upper: String,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct Demonstration {
+    pub risks: String,
+    pub allowed: Vec<(String, String)>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct Margin {
+    pub title: String,
+    pub rows: Vec<MarginRow>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct MarginRow {
+    pub share: String,
+    pub margin: String,
+    pub interval: String,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct Drivers {
+    pub none: Option<String>,
+    pub about: String,
+    pub outputs: Vec<DriverTable>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct DriverTable {
+    pub title: String,
+    pub sentence: String,
+    pub rows: Vec<DriverRow>,
+    pub explanations: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct DriverRow {
+    pub name: String,
+    pub first: String,
+    pub total: String,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct OutcomeRow {
+    pub title: &'static str,
+    pub nominal: String,
+    pub mean: String,
+    pub sd: String,
+    pub smallest: String,
+    pub largest: String,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct InputRow {
+    pub path: String,
+    pub description: &'static str,
+    pub law: String,
+    pub inputs: usize,
+    pub known: &'static str,
+    pub source: String,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct Method {
+    pub model: &'static str,
+    pub design: String,
+    pub tolerance: String,
+    pub caveats: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct Reproduction {
+    pub command: String,
+    pub version: &'static str,
+    pub seed: u64,
+    pub digest: String,
+    pub files: Vec<(String, String)>,
+}
+
+/// The findings in words.
+pub(super) fn view(findings: &Findings) -> View {
+    let one_sided = findings.verdict.confidence.unwrap_or(CONFIDENCE);
+    View {
+        title: findings.title.clone(),
+        verdict: verdict(findings),
+        interval_label: probability(CONFIDENCE),
+        bound_label: probability(one_sided),
+        probabilities: findings.probabilities.iter().map(probability_row).collect(),
+        statements: findings
+            .probabilities
+            .iter()
+            .filter(|p| p.kind != EventKind::Pair)
+            .filter_map(|p| p.statement.as_ref().map(|text| format!("{}: {text}.", p.title)))
+            .collect(),
+        demonstration: demonstration(findings),
+        margins: findings.margins.iter().map(margin).collect(),
+        drivers: drivers(findings),
+        nominal: nominal(findings),
+        outcomes: findings.outcomes.iter().map(|o| outcome_row(findings, o)).collect(),
+        exceptions: exceptions(findings),
+        inputs: findings
+            .inputs
+            .iter()
+            .map(|input| InputRow {
+                path: input.path.clone(),
+                description: input.description,
+                law: input.law.clone(),
+                inputs: input.inputs,
+                known: input.known,
+                source: input.source.clone(),
+            })
+            .collect(),
+        method: Method {
+            model: findings.method.model,
+            design: findings.method.design.clone(),
+            tolerance: format!("{:e}", findings.method.tolerance),
+            caveats: findings.method.caveats.clone(),
+        },
+        reproduction: Reproduction {
+            command: findings.reproduction.command.clone(),
+            version: findings.reproduction.version,
+            seed: findings.reproduction.seed,
+            digest: findings.reproduction.study_digest.clone(),
+            files: findings.reproduction.files.clone(),
+        },
+    }
+}
+
+fn verdict(findings: &Findings) -> Verdict {
+    let heading = match findings.verdict.word {
+        VerdictWord::Met => "MET.",
+        VerdictWord::NotMet => "NOT MET.",
+        VerdictWord::Undecided => "UNDECIDED.",
+        VerdictWord::NoRequirement => "NO REQUIREMENT.",
+    };
+    let worst = findings
+        .probabilities
+        .iter()
+        .filter(|p| p.kind == EventKind::Limit)
+        .max_by(|a, b| a.counts.breaches.cmp(&b.counts.breaches))
+        .filter(|p| p.counts.breaches > 0);
+    let sharpest = worst.map(|p| {
+        let share = p.probability.map_or("unknown".to_owned(), probability);
+        let driver = findings
+            .drivers
+            .outputs
+            .iter()
+            .find(|output| {
+                Some(&output.name["breach.".len().min(output.name.len())..])
+                    == p.limits.first().map(String::as_str)
+                    && output.breach
+            })
+            .and_then(|output| ranked(output).into_iter().next())
+            .and_then(|factor| Some((factor, factor.indices.total.value?)));
+        match driver {
+            Some((factor, total)) => format!(
+                "Most often breached: {} ({share}), driven most by `{}` (total index {total:.2}).",
+                p.title, factor.name
+            ),
+            None => format!("Most often breached: {} ({share}).", p.title),
+        }
+    });
+    Verdict { heading, statement: findings.verdict.statement.clone(), sharpest }
+}
+
+fn probability_row(finding: &crate::findings::ProbabilityFinding) -> ProbabilityRow {
+    let faults = match finding.counts.faults {
+        0 => String::new(),
+        faults => format!(" (+{} unknown)", count(faults)),
+    };
+    ProbabilityRow {
+        title: finding.title.clone(),
+        pair: finding.kind == EventKind::Pair,
+        counts: format!(
+            "{}{faults} of {}",
+            count(finding.counts.breaches),
+            count(finding.counts.samples)
+        ),
+        probability: finding.probability.map_or("–".to_owned(), probability),
+        interval: probability_interval(&finding.interval),
+        upper: upper_end(&finding.upper_bound),
+    }
+}
+
+fn demonstration(findings: &Findings) -> Option<Demonstration> {
+    let verdict = &findings.verdict;
+    let (reliability, confidence) = (verdict.reliability?, verdict.confidence?);
+    let allowed =
+        verdict.failures_allowed.iter().map(|&(f, n)| (count(f), count(n))).collect::<Vec<_>>();
+    let mut risks = format!(
+        "Reliability {reliability} at {} confidence is demonstrated by this many independent samples with \
+         at most this many failures.",
+        probability(confidence)
+    );
+    if let Some(Decision::Counts(d)) = &verdict.decision {
+        let few = d.failures_allowed.map_or("no number of failures".to_owned(), |f| {
+            format!("at most {} failures", count(f))
+        });
+        risks += &format!(
+            " Among the {} samples run, {few} would do. Consumer's risk (a system just at the limit \
+             passes): {}. Producer's risk (a system with failure probability {} does not pass): {}.",
+            count(d.counts.samples),
+            d.consumers_risk.map_or("none can pass".to_owned(), probability),
+            probability(d.producers_failure_probability),
+            probability(d.producers_risk),
+        );
+    }
+    Some(Demonstration { risks, allowed })
+}
+
+fn quantity_of(outcome: &str) -> Quantity {
+    OutcomeQuantity::from_name(outcome).map_or(Quantity::Number, OutcomeQuantity::quantity)
+}
+
+fn margin(finding: &MarginFinding) -> Margin {
+    let quantity = quantity_of(finding.outcome).of_difference();
+    let title = OutcomeQuantity::from_name(finding.outcome).map_or(finding.outcome, |q| q.title());
+    Margin {
+        title: format!("{title}, limit {}", finding.limit_text),
+        rows: finding
+            .quantiles
+            .iter()
+            .map(|q| MarginRow {
+                share: probability(q.share),
+                margin: maybe(q.margin, quantity),
+                interval: value_interval(&q.interval, quantity),
+            })
+            .collect(),
+    }
+}
+
+/// The factors of an output without the members of listed groups, the strongest first.
+pub(super) fn ranked(output: &DriverOutput) -> Vec<&FactorFinding> {
+    let mut factors: Vec<&FactorFinding> = output.factors.iter().filter(|f| !f.grouped).collect();
+    let strength = |f: &FactorFinding| f.indices.total.value.unwrap_or(f64::NEG_INFINITY);
+    factors.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
+    factors
+}
+
+fn index(estimate: &Estimate) -> String {
+    match (estimate.value, estimate.interval.interval()) {
+        (Some(value), Some(i)) => format!("{value:.3} ({:.3} … {:.3})", i.lower, i.upper),
+        (Some(value), None) => format!("{value:.3} (no interval)"),
+        (None, _) => "–".to_owned(),
+    }
+}
+
+fn drivers(findings: &Findings) -> Drivers {
+    let drivers = &findings.drivers;
+    let faults = match drivers.faults {
+        0 => String::new(),
+        faults => {
+            format!(" {} of them could not be computed and their rows are left out.", count(faults))
+        }
+    };
+    let about = format!(
+        "Sobol' indices from a pick-freeze design of {} rows, {} descents of their own.{faults} An index is \
+         the share of the variance that a factor explains alone, and with all its interactions; in brackets \
+         its {} bootstrap interval. A breach that needs several causes at once has small first-order and \
+         large total indices. Every output and factor is in `sensitivity.parquet`.",
+        count(drivers.base_samples as u64),
+        count(drivers.descents),
+        probability(CONFIDENCE)
+    );
+    let limited: Vec<&str> = findings.margins.iter().map(|margin| margin.outcome).collect();
+    let shown = |output: &&DriverOutput| {
+        output.name == "breach.any" || limited.contains(&output.name.as_str())
+    };
+    let mut outputs: Vec<&DriverOutput> = drivers.outputs.iter().filter(shown).collect();
+    outputs.sort_by_key(|output| !output.breach);
+    Drivers {
+        none: drivers.none.clone(),
+        about,
+        outputs: outputs.into_iter().map(driver_table).collect(),
+    }
+}
+
+fn driver_table(output: &DriverOutput) -> DriverTable {
+    let factors = ranked(output);
+    let shown = &factors[..factors.len().min(SHOWN_FACTORS)];
+    let why_none = shown.first().and_then(|factor| factor.indices.total.interval.why_none());
+    let grouped = output.factors.iter().filter(|factor| factor.grouped);
+    let strongest = grouped.filter_map(|f| f.indices.total.value).fold(f64::NAN, f64::max);
+    let mut sentence = match (shown.first(), why_none) {
+        (Some(factor), _) if factor.indices.total.value.is_some() => {
+            format!("Strongest: `{}`.", factor.name)
+        }
+        (_, Some(why)) => format!("No indices: {why}."),
+        _ => "No indices.".to_owned(),
+    };
+    if strongest.is_finite() {
+        sentence +=
+            &format!(" No single member of a group has a total index above {strongest:.3}.");
+    }
+    let mut explanations: Vec<String> = shown
+        .iter()
+        .filter_map(|f| f.indices.explanation.as_ref().map(|text| format!("`{}`: {text}.", f.name)))
+        .collect();
+    explanations.dedup();
+    DriverTable {
+        title: output.title.clone(),
+        sentence,
+        rows: shown
+            .iter()
+            .filter(|factor| factor.indices.total.value.is_some())
+            .map(|factor| DriverRow {
+                name: match factor.inputs {
+                    1 => format!("`{}`", factor.name),
+                    many => format!("`{}`, {many} as one", factor.name.trim_end_matches(" (all)")),
+                },
+                first: index(&factor.indices.first),
+                total: index(&factor.indices.total),
+            })
+            .collect(),
+        explanations,
+    }
+}
+
+fn nominal(findings: &Findings) -> String {
+    let nominal = &findings.nominal;
+    match (nominal.fault, nominal.deployed) {
+        (Some(fault), _) => format!("The nominal descent could not be computed: {fault}."),
+        (None, Some(false)) => {
+            "The nominal descent does not deploy within the time limit.".to_owned()
+        }
+        (None, _) if nominal.breaches.is_empty() => {
+            "The nominal descent, every input at its nominal value, keeps every limit.".to_owned()
+        }
+        (None, _) => format!("The nominal descent breaches: {}.", nominal.breaches.join(", ")),
+    }
+}
+
+fn outcome_row(findings: &Findings, outcome: &crate::findings::OutcomeFinding) -> OutcomeRow {
+    let quantity = quantity_of(outcome.name);
+    OutcomeRow {
+        title: OutcomeQuantity::from_name(outcome.name).map_or(outcome.name, |q| q.title()),
+        nominal: maybe(findings.nominal.outcomes.get(&outcome.column).copied(), quantity),
+        mean: maybe(outcome.mean, quantity),
+        sd: outcome
+            .standard_deviation
+            .map_or("–".to_owned(), |sd| value(sd, quantity.of_difference())),
+        smallest: outcome.smallest.map_or("–".to_owned(), |v| bare(v, quantity)),
+        largest: outcome.largest.map_or("–".to_owned(), |v| bare(v, quantity)),
+    }
+}
+
+fn exceptions(findings: &Findings) -> Vec<String> {
+    let exceptions = &findings.exceptions;
+    let mut lines = vec![match exceptions.not_deployed {
+        0 => "Every computed descent ran out its line before the time limit of 1800 s.".to_owned(),
+        some => format!(
+            "{} descents had not run out their line after 1800 s; they breach the time limit, and their \
+             other outcomes are those at 1800 s.",
+            count(some)
+        ),
+    }];
+    lines.push(match exceptions.faulted {
+        0 => "Every sample could be computed.".to_owned(),
+        some => {
+            let kinds: Vec<String> =
+                exceptions.faults.iter().map(|(kind, n)| format!("{kind} {}", count(*n))).collect();
+            let first: Vec<String> = exceptions
+                .first_faulted
+                .iter()
+                .map(|(index, kind)| format!("{index} ({kind})"))
+                .collect();
+            format!(
+                "{} samples could not be computed ({}); they are rows of the table, and every probability \
+                 above allows for each of them being a breach. The first: {}.",
+                count(some),
+                kinds.join(", "),
+                first.join(", ")
+            )
+        }
+    });
+    lines
+}

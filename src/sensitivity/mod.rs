@@ -1,0 +1,20 @@
+//! What drives an outcome: sensitivity indices from designs of their own and from samples already run.
+//!
+//! Every function takes columns of numbers, one outcome at a time, so that a caller can work on the
+//! outcomes in parallel. A sample that could not be computed is NaN: it is left out and counted.
+
+// From a design of their own.
+pub mod bootstrap;
+pub mod pick_freeze;
+mod rare_events;
+pub mod sobol_indices;
+
+// From samples already run.
+pub mod borgonovo;
+mod classes;
+pub mod given_data;
+pub mod hsic;
+pub mod pawn;
+pub mod rank_index;
+pub mod regression;
+pub mod score;

@@ -1,0 +1,25 @@
+//! One column of numbers out of a user's Parquet file, for empirical laws.
+
+use polars::prelude::{DataType, ParquetReader, SerReader};
+use std::fs::File;
+use std::path::Path;
+
+/// The numbers of a column of a Parquet file. A failure is its reason, in a few words.
+///
+/// # Errors
+/// If the file cannot be read, has no such column, or the column holds no numbers or a null.
+pub fn read_number_column(path: &Path, column: &str) -> Result<Vec<f64>, String> {
+    let file = File::open(path).map_err(|reason| reason.to_string())?;
+    let frame = ParquetReader::new(file)
+        .with_columns(Some(vec![column.to_owned()]))
+        .finish()
+        .map_err(|reason| reason.to_string())?;
+    let values = frame.column(column).map_err(|reason| reason.to_string())?;
+    let values = values.cast(&DataType::Float64).map_err(|reason| reason.to_string())?;
+    let values = values.f64().map_err(|reason| reason.to_string())?;
+    values
+        .iter()
+        .enumerate()
+        .map(|(k, value)| value.ok_or_else(|| format!("row {} of column {column} is null", k + 1)))
+        .collect()
+}

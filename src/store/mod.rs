@@ -1,0 +1,13 @@
+//! What is kept of a run on disk: Parquet tables, and files that are whole or not there.
+//!
+//! The only place that says polars.
+
+mod atomic;
+mod column_file;
+mod outcomes_file;
+mod parquet;
+
+pub use atomic::{AtomicFile, write_text};
+pub use column_file::read_number_column;
+pub use outcomes_file::{OutcomesReader, OutcomesWriter, Parentage};
+pub use parquet::{Field, write_table};

@@ -1,0 +1,136 @@
+//! Cards: the inputs that are uncertain, statement by statement.
+
+use super::document::{Key, Node, Table, Value};
+use super::read;
+use super::vocabulary::CARD;
+use crate::error::Result;
+use crate::physics::design::Target;
+use crate::physics::parameters::{PARAMETERS, Parameter};
+use crate::units::spelling::nearest;
+
+/// What a card says of one input, before it is understood.
+#[derive(Debug, Clone)]
+pub(super) struct Statement {
+    pub target: Target,
+    pub key: Key,
+    pub node: Node,
+}
+
+/// A card, before it is understood.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Card {
+    pub statements: Vec<Statement>,
+    pub correlations: Vec<Node>,
+}
+
+/// The target of a dotted path: `brake.gap[3]` is the gap of surface 3, counted from 1.
+pub(super) fn parameter_path(path: &str) -> Option<Target> {
+    if let Some(parameter) = Parameter::from_path(path) {
+        return Some(Target::whole(parameter));
+    }
+    let number = path.strip_prefix(Parameter::BrakeGap.info().path)?;
+    let number = number.strip_prefix('[')?.strip_suffix(']')?.trim();
+    if !number.bytes().all(|byte| byte.is_ascii_digit()) {
+        return None;
+    }
+    let surface: usize = number.parse().ok()?;
+    Some(Target::gap(surface.checked_sub(1)?))
+}
+
+/// Sorts the entries of a card into inputs and correlations.
+pub(super) fn read_card(document: &Node) -> Result<Card> {
+    let mut card = Card::default();
+    for (key, node) in read::table(document, "[brake.gap]")? {
+        match key.name.as_str() {
+            "title" | "description" => {
+                read::string(node, "a text")?;
+            }
+            "correlation" => match &node.value {
+                Value::Array(items) => card.correlations.extend(items.iter().cloned()),
+                other => {
+                    let problem = format!("this is {}", other.described());
+                    let expected = "expected statements that begin with [[correlation]]";
+                    return Err(node.place.error(problem, expected));
+                }
+            },
+            _ => collect(key.name.clone(), key, node, &mut card.statements)?,
+        }
+    }
+    Ok(card)
+}
+
+/// Collects the inputs at and below `path`.
+fn collect(path: String, key: &Key, node: &Node, into: &mut Vec<Statement>) -> Result<()> {
+    if let Some(target) = parameter_path(&path) {
+        if into.iter().any(|statement| statement.target == target) {
+            let problem = format!("{path} is given twice in one card");
+            return Err(key.place.error(problem, "expected each input once"));
+        }
+        if !matches!(node.value, Value::Table(_)) {
+            let problem = format!("{path} has no law: this is {}", node.value.described());
+            let expected = format!("expected a table that begins with [{path}]");
+            return Err(node.place.error(problem, expected));
+        }
+        into.push(Statement { target, key: key.clone(), node: node.clone() });
+        return Ok(());
+    }
+    let group = format!("{path}.");
+    match &node.value {
+        Value::Table(entries) if PARAMETERS.iter().any(|info| info.path.starts_with(&group)) => {
+            for (key, child) in entries {
+                collect(format!("{path}.{}", key.name), key, child, into)?;
+            }
+            Ok(())
+        }
+        _ => Err(unknown_input(&path, key)),
+    }
+}
+
+fn unknown_input(path: &str, key: &Key) -> crate::error::Error {
+    let paths = PARAMETERS.iter().map(|info| info.path);
+    let groups = paths.clone().filter_map(|path| path.split_once('.')).map(|(group, _)| group);
+    let others = CARD.iter().map(|info| info.name);
+    let help = nearest(path, paths.chain(others).chain(groups));
+    key.place.error_with(
+        format!("unknown input `{path}`"),
+        "expected a dotted path, such as [brake.gap] or [initial.temperature]",
+        help.map(|near| format!("did you mean `{near}`?")),
+    )
+}
+
+/// Merges cards: of two statements about one input the later wins.
+pub(super) fn merge(cards: Vec<Card>) -> Card {
+    let mut merged = Card::default();
+    for card in cards {
+        for statement in &card.statements {
+            // The gap as a whole replaces what earlier cards said of single gaps.
+            merged.statements.retain(|earlier| {
+                earlier.target != statement.target
+                    && !(statement.target.surface.is_none()
+                        && earlier.target.parameter == statement.target.parameter)
+            });
+        }
+        merged.statements.extend(card.statements);
+        merged.correlations.extend(card.correlations);
+    }
+    merged
+}
+
+/// Puts an override's value into the statement about an input, or makes one.
+pub(super) fn put(card: &mut Card, target: Target, key: &Key, name: &str, value: &Node) {
+    let here = Key { name: name.to_owned(), place: key.place.clone() };
+    let entry = (here, value.clone());
+    let found = card.statements.iter_mut().find(|statement| statement.target == target);
+    let entries: &mut Table = match found {
+        Some(Statement { node: Node { value: Value::Table(entries), .. }, .. }) => entries,
+        _ => {
+            let node = Node { value: Value::Table(vec![entry]), place: key.place.clone() };
+            card.statements.push(Statement { target, key: key.clone(), node });
+            return;
+        }
+    };
+    match entries.iter_mut().find(|(existing, _)| existing.name == name) {
+        Some(existing) => *existing = entry,
+        None => entries.push(entry),
+    }
+}

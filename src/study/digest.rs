@@ -1,0 +1,113 @@
+//! Digests: of the resolved study, which fixes every number of a run, and of its raw texts.
+
+use super::{LimitKind, Study};
+use sha2::{Digest, Sha256};
+use std::fmt::Write;
+
+impl Study {
+    /// SHA-256, in hexadecimal, of the resolved study: everything that can change a number of its
+    /// run, in SI with exact digits, and nothing else (no comment, title, source, or spelling of a unit).
+    pub fn digest(&self) -> String {
+        of_text(&self.canonical_text())
+    }
+
+    /// Name and SHA-256 of each raw text: the study file, then its cards.
+    pub fn file_digests(&self) -> Vec<(String, String)> {
+        let study = (self.origin.clone(), of_text(&self.study_text));
+        let cards = self.card_texts.iter().map(|(name, text)| (name.clone(), of_text(text)));
+        std::iter::once(study).chain(cards).collect()
+    }
+
+    /// The text of which [`Study::digest`] is the digest: one statement a line, numbers exact.
+    pub fn canonical_text(&self) -> String {
+        let mut lines = vec!["reeldown study 1".to_owned(), format!("model {}", self.model.name())];
+        for info in &crate::physics::parameters::PARAMETERS {
+            lines.push(format!("design {} {:e}", info.path, self.design.get(info.parameter)));
+        }
+        for (surface, gap) in self.design.gaps().iter().enumerate() {
+            lines.push(format!("design brake.gap[{}] {gap:e}", surface + 1));
+        }
+        for input in &self.inputs {
+            lines.push(format!(
+                "input {} {} known={:?} group={:?}",
+                input.target.path(),
+                input.law_canonical,
+                input.known.name(),
+                input.group.as_deref().unwrap_or("")
+            ));
+        }
+        for correlation in &self.correlations {
+            let (a, b) = correlation.between;
+            let (name, value) = (correlation.measure.name(), correlation.measure.value());
+            lines.push(format!("correlation {a} {b} {name} {value:e}"));
+        }
+        for limit in &self.limits {
+            let kind = match limit.kind {
+                LimitKind::Max => "max",
+                LimitKind::Min => "min",
+            };
+            lines.push(format!("limit {} {kind} {:e}", limit.outcome.name(), limit.value));
+        }
+        if let Some(requirement) = self.requirement {
+            let (reliability, confidence) = (requirement.reliability, requirement.confidence);
+            lines.push(format!("requirement {reliability:e} {confidence:e}"));
+        }
+        let plan = self.sampling;
+        lines.push(format!(
+            "sampling {} samples={} seed={} replicates={}",
+            plan.design.name(),
+            plan.samples,
+            plan.seed,
+            plan.replicates
+        ));
+        lines.push(format!("numerics tolerance={:e}", self.numerics.tolerance));
+        let plan = self.sensitivity;
+        lines.push(format!(
+            "sensitivity base_samples={} bootstrap={}",
+            plan.base_samples, plan.bootstrap
+        ));
+        let methods = self.reliability.methods.as_ref();
+        lines.push(format!(
+            "reliability {}",
+            methods.map_or("default".to_owned(), |methods| methods.join(","))
+        ));
+        lines.push(String::new());
+        lines.join("\n")
+    }
+}
+
+/// SHA-256 of a text, in hexadecimal.
+fn of_text(text: &str) -> String {
+    hexadecimal(&Sha256::digest(text.as_bytes()))
+}
+
+/// SHA-256 of numbers, bit for bit and in their order, in hexadecimal.
+pub(super) fn of_numbers(numbers: &[f64]) -> String {
+    let mut hasher = Sha256::new();
+    for number in numbers {
+        hasher.update(number.to_bits().to_le_bytes());
+    }
+    hexadecimal(&hasher.finalize())
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::with_capacity(2 * bytes.len()), |mut text, byte| {
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn published_digest_of_abc() {
+        // FIPS 180-4, example "abc".
+        assert_eq!(
+            of_text("abc"),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+        );
+    }
+}

@@ -1,0 +1,88 @@
+//! From the statements of cards to the uncertain inputs of a study.
+
+use super::card::{Card, Statement};
+use super::empirical::ColumnReader;
+use super::law::understand;
+use super::read;
+use super::sections::check_surface;
+use super::{Input, Known};
+use crate::error::Result;
+use crate::physics::design::{Design, Target};
+use crate::physics::parameters::Parameter;
+
+/// The inputs of a card for a design, in the order of [`Target`].
+///
+/// # Errors
+/// A diagnostic: see [`understand`]; also a surface that the design does not have, and what cannot
+/// be uncertain.
+pub(super) fn inputs(
+    card: &Card,
+    design: &Design<f64>,
+    columns: ColumnReader<'_>,
+) -> Result<Vec<Input>> {
+    let mut inputs = Vec::new();
+    for statement in &card.statements {
+        check_surface(statement.target, design, &statement.key)?;
+        let (template, each_surface) = input(statement, &mut *columns)?;
+        if !each_surface {
+            inputs.push(template);
+            continue;
+        }
+        for surface in 0..design.surfaces() {
+            let target = Target::gap(surface);
+            // A surface with a statement of its own keeps that.
+            if card.statements.iter().all(|other| other.target != target) {
+                inputs.push(Input { target, ..template.clone() });
+            }
+        }
+    }
+    inputs.sort_by_key(|input| input.target);
+    Ok(inputs)
+}
+
+/// One statement as an input, and whether it stands for one on each surface.
+fn input(statement: &Statement, columns: ColumnReader<'_>) -> Result<(Input, bool)> {
+    let Statement { target, key, node } = statement;
+    if target.parameter == Parameter::BrakeRotors {
+        let expected = "expected a continuous parameter: rotors are counted";
+        return Err(key.place.error("brake.rotors cannot be uncertain", expected));
+    }
+    let entries = read::table(node, "law = \"normal\"")?;
+    let find = |name: &str| entries.iter().find(|(key, _)| key.name == name);
+    let require = |name: &str, expected: &str| {
+        find(name).map(|(_, node)| node).ok_or_else(|| {
+            let problem = format!("{} lacks the key `{name}`", target.path());
+            key.place.error(problem, format!("expected {expected}"))
+        })
+    };
+    let law = understand(statement, columns)?;
+    let each_surface = match find("each_surface") {
+        None => false,
+        Some((key, node)) => {
+            if *target != Target::whole(Parameter::BrakeGap) {
+                let problem = format!("{} has no working surfaces", target.path());
+                return Err(key.place.error(problem, "expected each_surface in [brake.gap] only"));
+            }
+            read::boolean(node)?
+        }
+    };
+    let known_names = Known::ALL.map(Known::name);
+    let known_node = require("known", "known = \"at build\", \"on the day\" or \"never\"")?;
+    let known = read::choice(known_node, "time of knowledge", &known_names, Known::from_name)?;
+    let source_node = require("source", "source = \"…\": where the distribution comes from")?;
+    let source = read::string(source_node, "where the distribution comes from")?.trim().to_owned();
+    let group = match find("group") {
+        Some((_, node)) => Some(read::string(node, "the name of a group")?.trim().to_owned()),
+        None => each_surface.then(|| target.path()),
+    };
+    let input = Input {
+        target: *target,
+        marginal: law.marginal,
+        known,
+        source,
+        group,
+        law_text: law.text,
+        law_canonical: law.canonical,
+    };
+    Ok((input, each_surface))
+}

@@ -1,0 +1,260 @@
+//! The study: what is to be found out, checked and in SI. There is no file access after it.
+//!
+//! A study file names a design, limits, a requirement and a sampling plan; its card says what is
+//! uncertain. [`Study::load`] reads both; everything between the bytes and the [`Study`] is a pure
+//! function of the texts, and every mistake in them is a [`crate::error::Diagnostic`].
+
+mod assemble;
+mod card;
+mod correlation;
+mod digest;
+mod document;
+mod empirical;
+mod inputs;
+mod law;
+mod laws;
+mod load;
+mod overrides;
+mod place;
+mod read;
+mod resolved;
+pub mod schema;
+mod sections;
+mod vocabulary;
+
+use crate::descent::{Model, Outcome, OutcomeQuantity};
+use crate::physics::design::{Design, Target};
+use crate::sampling;
+use crate::uncertainty::{Joint, Marginal, Measure};
+
+pub use assemble::{Files, NamedText, assemble};
+pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, read_column};
+pub use overrides::Override;
+pub use resolved::{ResolvedParameter, UncertainLaw};
+
+/// A study, resolved: every value in SI, every name known.
+#[derive(Debug, Clone)]
+pub struct Study {
+    /// What the study is called.
+    pub title: String,
+    /// The equations to integrate.
+    pub model: Model,
+    /// The nominal design, SI.
+    pub design: Design<f64>,
+    /// What is uncertain, in the order of [`Target`], in which values are to be set; input `k` is
+    /// coordinate `k` of a sample.
+    pub inputs: Vec<Input>,
+    /// The joint distribution of the inputs, in the same order.
+    pub joint: Joint,
+    /// The statements that the joint distribution's dependence was made from.
+    pub correlations: Vec<Correlation>,
+    /// What a descent must not breach, in the order of [`OutcomeQuantity`], upper limit first.
+    pub limits: Vec<Limit>,
+    /// What the verdict is held against.
+    pub requirement: Option<Requirement>,
+    /// How the inputs are sampled.
+    pub sampling: SamplingPlan,
+    /// How accurately a descent is integrated.
+    pub numerics: Numerics,
+    /// How the sensitivity indices are estimated.
+    pub sensitivity: SensitivityPlan,
+    /// How small probabilities are estimated.
+    pub reliability: ReliabilityPlan,
+    /// The design values that were stated, as written, in the order of [`Target`].
+    pub stated: Vec<Stated>,
+    /// What a reader should know about how the study was understood.
+    pub notes: Vec<String>,
+    /// The study file's name, or what it is called when it is embedded.
+    pub origin: String,
+    /// The study file's text.
+    pub study_text: String,
+    /// Name and text of every card, in the order in which they are merged.
+    pub card_texts: Vec<(String, String)>,
+    /// The `--set` statements and their like that were applied, as typed.
+    pub overrides: Vec<String>,
+}
+
+/// One uncertain input: where its value goes and how it is distributed.
+#[derive(Debug, Clone)]
+pub struct Input {
+    /// Where the value goes.
+    pub target: Target,
+    /// Its distribution, SI.
+    pub marginal: Marginal,
+    /// When its value becomes known.
+    pub known: Known,
+    /// Where the distribution comes from.
+    pub source: String,
+    /// The factor to which it belongs in grouped sensitivities; the gaps of one statement share one.
+    pub group: Option<String>,
+    /// The law as written, for a person.
+    pub law_text: String,
+    /// The law in SI with exact numbers, for the digest.
+    pub law_canonical: String,
+}
+
+/// When the value of an uncertain input becomes known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Known {
+    /// Once the brake is built and measured.
+    AtBuild,
+    /// On the day of the flight.
+    OnTheDay,
+    /// Never before the flight is over.
+    Never,
+}
+
+impl Known {
+    /// All, in the order of time.
+    pub const ALL: [Known; 3] = [Known::AtBuild, Known::OnTheDay, Known::Never];
+
+    /// The name in cards.
+    pub fn name(self) -> &'static str {
+        match self {
+            Known::AtBuild => "at build",
+            Known::OnTheDay => "on the day",
+            Known::Never => "never",
+        }
+    }
+
+    /// The member of a name.
+    pub fn from_name(name: &str) -> Option<Known> {
+        Self::ALL.into_iter().find(|known| known.name() == name)
+    }
+}
+
+/// A statement of dependence between two inputs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Correlation {
+    /// Places of the two inputs in [`Study::inputs`], the smaller first.
+    pub between: (usize, usize),
+    /// The coefficient as stated, −1 … 1, with its kind.
+    pub measure: Measure,
+    /// Where it comes from.
+    pub source: String,
+}
+
+/// Which side of a limit is allowed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum LimitKind {
+    /// The outcome may be at most the value.
+    Max,
+    /// The outcome must be at least the value.
+    Min,
+}
+
+impl LimitKind {
+    /// Both kinds.
+    pub const ALL: [LimitKind; 2] = [LimitKind::Max, LimitKind::Min];
+
+    /// The key in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            LimitKind::Max => "max",
+            LimitKind::Min => "min",
+        }
+    }
+}
+
+/// A limit on an outcome.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limit {
+    /// The outcome quantity that is limited.
+    pub outcome: OutcomeQuantity,
+    /// Which side is allowed.
+    pub kind: LimitKind,
+    /// The limit, SI.
+    pub value: f64,
+    /// The limit as written.
+    pub text: String,
+}
+
+impl Limit {
+    /// The margin of an outcome's value, SI: negative is a breach. `max − value` or `value − min`.
+    pub fn margin_of(&self, value: f64) -> f64 {
+        match self.kind {
+            LimitKind::Max => self.value - value,
+            LimitKind::Min => value - self.value,
+        }
+    }
+
+    /// The margin of a descent, SI: negative is a breach.
+    ///
+    /// A descent that did not deploy carries the time limit of a descent as its time, and an upper
+    /// limit on time lies below that: it is breached.
+    pub fn margin(&self, outcome: &Outcome) -> f64 {
+        self.margin_of(outcome.get(self.outcome))
+    }
+
+    /// The name of the limit in tables: `time` for an upper limit, `time_min` for a lower one.
+    pub fn name(&self) -> String {
+        match self.kind {
+            LimitKind::Max => self.outcome.name().to_owned(),
+            LimitKind::Min => format!("{}_min", self.outcome.name()),
+        }
+    }
+
+    /// The Parquet column of the margin: `time_margin_s`.
+    pub fn margin_column(&self) -> String {
+        let suffix = self.outcome.quantity().column_suffix();
+        format!("{}_margin{suffix}", self.name())
+    }
+}
+
+/// What the verdict is held against: reliability `R` demonstrated at confidence `C`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Requirement {
+    /// Smallest acceptable probability that no limit is breached, in (0, 1).
+    pub reliability: f64,
+    /// Confidence with which it must be demonstrated, in (0, 1).
+    pub confidence: f64,
+}
+
+/// How the inputs are sampled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SamplingPlan {
+    /// The design of experiment.
+    pub design: sampling::Design,
+    /// Number of descents in all, over all replicates.
+    pub samples: u64,
+    /// Seed of every random stream.
+    pub seed: u64,
+    /// Number of independent replicates; 1 for plain Monte Carlo, else it divides `samples`.
+    pub replicates: u32,
+}
+
+/// How accurately a descent is integrated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Numerics {
+    /// Relative error asked of the outcomes.
+    pub tolerance: f64,
+}
+
+/// How the sensitivity indices are estimated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SensitivityPlan {
+    /// Rows of each block of the pick-freeze design; 0 leaves the indices out.
+    pub base_samples: u64,
+    /// Number of bootstrap resamples behind each interval.
+    pub bootstrap: u32,
+}
+
+/// How small probabilities are estimated.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ReliabilityPlan {
+    /// Names of the methods to run, besides the samples themselves; `None` leaves the choice to the program.
+    pub methods: Option<Vec<String>>,
+}
+
+/// A design value that the study states.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stated {
+    /// Where the value goes.
+    pub target: Target,
+    /// The value, SI.
+    pub value: f64,
+    /// The value as written.
+    pub text: String,
+    /// The text that states it: the study file, or the option.
+    pub origin: String,
+}

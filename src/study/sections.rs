@@ -1,0 +1,399 @@
+//! The sections of a study file, one function each.
+
+use super::card::parameter_path;
+use super::document::{Key, Node, Value};
+use super::read::{self, Section, unknown_key};
+use super::vocabulary as keys;
+use super::{
+    Limit, LimitKind, Numerics, ReliabilityPlan, Requirement, SamplingPlan, SensitivityPlan, Stated,
+};
+use crate::descent::OutcomeQuantity;
+use crate::descent::outcome::TIME_LIMIT_S;
+use crate::error::Result;
+use crate::physics::design::{Design, Target};
+use crate::physics::parameters::{PARAMETERS, Parameter};
+use crate::sampling;
+use crate::units::Quantity;
+use crate::units::spelling::nearest;
+
+/// Descents of a study that does not say how many.
+const DEFAULT_SAMPLES: u64 = 100_000;
+/// Seed of a study that does not name one.
+const DEFAULT_SEED: u64 = 1993;
+/// Relative error asked of the outcomes.
+const DEFAULT_TOLERANCE: f64 = 1e-6;
+const DEFAULT_SENSITIVITY: SensitivityPlan =
+    SensitivityPlan { base_samples: 4096, bootstrap: 1000 };
+
+/// One value of `[design]`.
+#[derive(Debug, Clone)]
+pub(super) struct DesignEntry {
+    pub target: Target,
+    pub node: Node,
+    pub key: Key,
+}
+
+/// The leaves of `[design]`, by dotted path, whether it is written with dots, quotes or tables.
+pub(super) fn design_entries(node: &Node) -> Result<Vec<DesignEntry>> {
+    let mut entries: Vec<DesignEntry> = Vec::new();
+    let mut pending = vec![(String::new(), node)];
+    while let Some((prefix, node)) = pending.pop() {
+        for (key, child) in read::table(node, "\"brake.gap\" = \"0.062 in\"")? {
+            let path =
+                if prefix.is_empty() { key.name.clone() } else { format!("{prefix}.{}", key.name) };
+            if let (Value::Table(_), None) = (&child.value, parameter_path(&path)) {
+                pending.push((path, child));
+                continue;
+            }
+            let entry = design_entry(&path, key, child)?;
+            if entries.iter().any(|other| other.target == entry.target) {
+                let problem = format!("{path} is given twice");
+                return Err(key.place.error(problem, "expected each design key once"));
+            }
+            entries.push(entry);
+        }
+    }
+    Ok(entries)
+}
+
+/// One leaf of `[design]`, or of an override.
+pub(super) fn design_entry(path: &str, key: &Key, node: &Node) -> Result<DesignEntry> {
+    let Some(target) = parameter_path(path) else {
+        let paths: Vec<&str> = PARAMETERS.iter().map(|info| info.path).collect();
+        let key = Key { name: path.to_owned(), place: key.place.clone() };
+        return Err(match nearest(path, paths.iter().copied()) {
+            None => key.place.error(
+                format!("unknown design key `{path}`"),
+                "expected a dotted path, such as brake.gap or initial.temperature",
+            ),
+            Some(near) => key.place.error_with(
+                format!("unknown design key `{path}`"),
+                "expected a dotted path, such as brake.gap or initial.temperature",
+                Some(format!("did you mean `{near}`?")),
+            ),
+        });
+    };
+    if let Value::Table(_) = node.value {
+        let problem = format!("`{path}` is given a table");
+        let help = "laws of uncertain inputs belong in the card".to_owned();
+        let expected =
+            format!("expected a value, such as \"{}\"", target.parameter.info().baseline_text);
+        return Err(node.place.error_with(problem, expected, Some(help)));
+    }
+    Ok(DesignEntry { target, node: node.clone(), key: key.clone() })
+}
+
+/// The design that the entries state, and the statements; a later layer wins over an earlier one.
+pub(super) fn design(layers: [Vec<DesignEntry>; 2]) -> Result<(Design<f64>, Vec<Stated>)> {
+    let mut design = Design::baseline();
+    let mut stated: Vec<(Stated, Node)> = Vec::new();
+    let rotors = Target::whole(Parameter::BrakeRotors);
+    // The number of rotors first: it says how many gaps there are.
+    let chosen = layers.iter().rev().flatten().find(|entry| entry.target == rotors);
+    if let Some(entry) = chosen {
+        let value = possible(entry)?;
+        if value.fract() != 0.0 {
+            let problem = format!("{value} rotors are impossible");
+            return Err(entry.node.place.error(problem, "expected a whole number, such as 7"));
+        }
+        design.set_rotors(value as usize);
+        stated.push((statement(entry, value), entry.node.clone()));
+    }
+    for mut layer in layers {
+        layer.sort_by_key(|entry| entry.target);
+        for entry in layer.iter().filter(|entry| entry.target != rotors) {
+            check_surface(entry.target, &design, &entry.key)?;
+            let value = possible(entry)?;
+            design.set(entry.target, value);
+            // The gap as a whole replaces what an earlier layer said of single gaps.
+            stated.retain(|(other, _)| {
+                other.target != entry.target
+                    && !(entry.target.surface.is_none()
+                        && other.target.parameter == entry.target.parameter)
+            });
+            stated.push((statement(entry, value), entry.node.clone()));
+        }
+    }
+    stated.sort_by_key(|(stated, _)| stated.target);
+    check_relations(&design, &stated)?;
+    Ok((design, stated.into_iter().map(|(stated, _)| stated).collect()))
+}
+
+fn statement(entry: &DesignEntry, value: f64) -> Stated {
+    Stated {
+        target: entry.target,
+        value,
+        text: written(&entry.node),
+        origin: entry.node.place.text.origin.clone(),
+    }
+}
+
+/// A value as written, without its quotes.
+pub(super) fn written(node: &Node) -> String {
+    match &node.value {
+        Value::String(text) => text.trim().to_owned(),
+        _ => node.place.written().trim().to_owned(),
+    }
+}
+
+fn possible(entry: &DesignEntry) -> Result<f64> {
+    let info = entry.target.parameter.info();
+    let value = read::quantity(&entry.node, info.quantity)?;
+    if info.admits(value) {
+        return Ok(value);
+    }
+    let problem = format!("{} = {} is impossible", entry.target.path(), written(&entry.node));
+    Err(entry.node.place.error(problem, possible_range(entry.target.parameter)))
+}
+
+/// "expected a value between 1 and 1000", in SI.
+pub(super) fn possible_range(parameter: Parameter) -> String {
+    let info = parameter.info();
+    let unit = info.quantity.si_unit();
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    let (lower, upper) = (info.lower, info.upper);
+    match (upper.is_finite(), info.open) {
+        (false, true) => format!("expected more than {lower}{unit}"),
+        (false, false) => format!("expected {lower}{unit} or more"),
+        (true, true) => format!("expected a value strictly between {lower} and {upper}{unit}"),
+        (true, false) => format!("expected a value from {lower} to {upper}{unit}"),
+    }
+}
+
+/// Checks that a gap's surface exists.
+pub(super) fn check_surface(target: Target, design: &Design<f64>, key: &Key) -> Result<()> {
+    match target.surface {
+        Some(surface) if surface >= design.surfaces() => {
+            let problem = format!("there is no working surface {}", surface + 1);
+            let last = design.surfaces();
+            let expected = format!("expected brake.gap[1] to brake.gap[{last}]: two a rotor");
+            Err(key.place.error(problem, expected))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Pairs of which the first must be the smaller.
+const ORDERED: [(Parameter, Parameter); 3] = [
+    (Parameter::BrakeInnerRadius, Parameter::BrakeOuterRadius),
+    (Parameter::ReelEmptyRadius, Parameter::ReelFullRadius),
+    (Parameter::PayloadExtractedWeight, Parameter::PayloadWeight),
+];
+
+fn check_relations(design: &Design<f64>, stated: &[(Stated, Node)]) -> Result<()> {
+    for (small, large) in ORDERED {
+        if design.get(small) < design.get(large) {
+            continue;
+        }
+        let find = |parameter| stated.iter().find(|(s, _)| s.target == Target::whole(parameter));
+        let text = |parameter: Parameter| {
+            find(parameter)
+                .map_or(parameter.info().baseline_text, |(s, _)| s.text.as_str())
+                .to_owned()
+        };
+        // The baseline fits itself, so one of the two was stated.
+        let Some((_, node)) = find(small).or_else(|| find(large)) else { continue };
+        let (small_text, large_text) = (text(small), text(large));
+        let problem = format!("{} does not fit {}", small.info().path, large.info().path);
+        let expected = format!(
+            "expected {} = {small_text} to be less than {} = {large_text}",
+            small.info().path,
+            large.info().path
+        );
+        return Err(node.place.error(problem, expected));
+    }
+    Ok(())
+}
+
+/// `[limits]`.
+pub(super) fn limits(node: &Node) -> Result<Vec<Limit>> {
+    let names = OutcomeQuantity::ALL.map(OutcomeQuantity::name);
+    let example = "{ max = \"210 s\" }";
+    let mut limits = Vec::new();
+    for (key, value) in read::table(node, &format!("time = {example}"))? {
+        let Some(outcome) = OutcomeQuantity::from_name(&key.name) else {
+            let help = nearest(&key.name, names).map(|near| format!("did you mean `{near}`?"));
+            let problem = format!("unknown outcome `{}` in [limits]", key.name);
+            return Err(key.place.error_with(problem, read::one_of(&names, '`'), help));
+        };
+        let section =
+            Section::new("a limit", &value.place, read::table(value, example)?, keys::LIMIT)?;
+        let mut sides = [None, None];
+        for (side, kind) in sides.iter_mut().zip(LimitKind::ALL) {
+            if let Some(node) = section.get(kind.name()) {
+                let value = limit_value(outcome, kind, node)?;
+                *side = Some((value, node));
+                limits.push(Limit { outcome, kind, value, text: written(node) });
+            }
+        }
+        match sides {
+            [Some((max, _)), Some((min, node))] if min >= max => {
+                let problem = format!("no {} can satisfy both limits", outcome.title());
+                return Err(node.place.error(problem, "expected min to be less than max"));
+            }
+            [None, None] => {
+                let problem = format!("the limit on {} is empty", key.name);
+                return Err(value
+                    .place
+                    .error(problem, format!("expected {example}, or min, or both")));
+            }
+            _ => {}
+        }
+    }
+    limits.sort_by_key(|limit| (limit.outcome, limit.kind));
+    Ok(limits)
+}
+
+fn limit_value(outcome: OutcomeQuantity, kind: LimitKind, node: &Node) -> Result<f64> {
+    let value = read::quantity(node, outcome.quantity())?;
+    let impossible = |expected: String| {
+        Err(node.place.error(format!("the limit {} is impossible", written(node)), expected))
+    };
+    if outcome.quantity() == Quantity::Temperature && value <= 0.0 {
+        return impossible("expected a temperature above absolute zero".to_owned());
+    }
+    if value < 0.0 {
+        return impossible(format!(
+            "expected {} that is not negative",
+            outcome.quantity().described()
+        ));
+    }
+    if outcome == OutcomeQuantity::Time && kind == LimitKind::Max && value >= TIME_LIMIT_S {
+        return impossible(format!(
+            "expected less than {TIME_LIMIT_S} s: a descent is followed no longer, and one that takes longer did not deploy"
+        ));
+    }
+    Ok(value)
+}
+
+/// `[requirement]`.
+pub(super) fn requirement(node: &Node) -> Result<Requirement> {
+    let entries = read::table(node, "{ reliability = 0.99, confidence = 0.90 }")?;
+    let section = Section::new("[requirement]", &node.place, entries, keys::REQUIREMENT)?;
+    let share = |name: &str, example: &str| {
+        read::open_share(section.require(name, example)?, name, example)
+    };
+    Ok(Requirement {
+        reliability: share("reliability", "0.99")?,
+        confidence: share("confidence", "0.90")?,
+    })
+}
+
+/// `[sampling]`; without it, plain Monte Carlo.
+pub(super) fn sampling(node: Option<&Node>) -> Result<SamplingPlan> {
+    let mut plan = SamplingPlan {
+        design: sampling::Design::MonteCarlo,
+        samples: DEFAULT_SAMPLES,
+        seed: DEFAULT_SEED,
+        replicates: 1,
+    };
+    let Some(node) = node else { return Ok(plan) };
+    let entries = read::table(node, "{ samples = 100_000, seed = 1993 }")?;
+    let section = Section::new("[sampling]", &node.place, entries, keys::SAMPLING)?;
+    if let Some(node) = section.get("design") {
+        let names = sampling::Design::ALL.map(sampling::Design::name);
+        plan.design = read::choice(node, "sampling design", &names, sampling::Design::from_name)?;
+    }
+    let plain = !plan.design.is_replicated();
+    if let Some(node) = section.get("samples") {
+        plan.samples = read::integer(node, 1, sampling::MAX_SAMPLES, "100_000")?;
+    }
+    if let Some(node) = section.get("seed") {
+        plan.seed = read::integer(node, 0, u64::MAX, "1993")?;
+    }
+    plan.replicates = match section.get("replicates") {
+        None if plain => 1,
+        None => sampling::DEFAULT_REPLICATES,
+        Some(node) if plain => {
+            let value = read::integer(node, 1, u64::from(u32::MAX), "1")?;
+            if value != 1 {
+                let help = "leave replicates out: plain Monte Carlo has an error of its own";
+                let problem = format!("{value} replicates of plain Monte Carlo");
+                let expected = "expected 1 for the design \"monte-carlo\"";
+                return Err(node.place.error_with(problem, expected, Some(help.to_owned())));
+            }
+            1
+        }
+        // Fewer than two have no spread to read an error from.
+        Some(node) => read::integer(node, 2, u64::from(sampling::MAX_REPLICATES), "16")? as u32,
+    };
+    let replicates = u64::from(plan.replicates);
+    if !plan.samples.is_multiple_of(replicates) {
+        let near = (plan.samples / replicates).max(1) * replicates;
+        let place = section.get("samples").or(section.get("replicates")).unwrap_or(node);
+        let problem =
+            format!("{} samples do not split into {replicates} equal replicates", plan.samples);
+        let expected = format!("expected a multiple of {replicates}");
+        return Err(place.place.error_with(problem, expected, Some(format!("such as {near}"))));
+    }
+    Ok(plan)
+}
+
+/// `[numerics]`.
+pub(super) fn numerics(node: Option<&Node>) -> Result<Numerics> {
+    let mut numerics = Numerics { tolerance: DEFAULT_TOLERANCE };
+    let Some(node) = node else { return Ok(numerics) };
+    let entries = read::table(node, "{ tolerance = 1e-6 }")?;
+    let section = Section::new("[numerics]", &node.place, entries, keys::NUMERICS)?;
+    if let Some(node) = section.get("tolerance") {
+        let value = read::quantity(node, Quantity::Number)?;
+        if !(1e-12..=1e-2).contains(&value) {
+            let problem = format!("the tolerance {} is impossible", written(node));
+            return Err(node.place.error(problem, "expected a relative error from 1e-12 to 1e-2"));
+        }
+        numerics.tolerance = value;
+    }
+    Ok(numerics)
+}
+
+/// `[sensitivity]`.
+pub(super) fn sensitivity(node: Option<&Node>) -> Result<SensitivityPlan> {
+    let mut plan = DEFAULT_SENSITIVITY;
+    let Some(node) = node else { return Ok(plan) };
+    let entries = read::table(node, "{ base_samples = 4096, bootstrap = 1000 }")?;
+    let section = Section::new("[sensitivity]", &node.place, entries, keys::SENSITIVITY)?;
+    if let Some(node) = section.get("base_samples") {
+        plan.base_samples = read::integer(node, 0, 1 << 32, "4096")?;
+        if plan.base_samples == 1 {
+            let expected = "expected 0 (no indices) or at least 2";
+            return Err(node.place.error("one row has no variance", expected));
+        }
+    }
+    if let Some(node) = section.get("bootstrap") {
+        plan.bootstrap = read::integer(node, 20, 1_000_000, "1000")? as u32;
+    }
+    Ok(plan)
+}
+
+/// `[reliability]`.
+pub(super) fn reliability(node: Option<&Node>) -> Result<ReliabilityPlan> {
+    let Some(node) = node else { return Ok(ReliabilityPlan::default()) };
+    let entries = read::table(node, "{ methods = [\"form\"] }")?;
+    let section = Section::new("[reliability]", &node.place, entries, keys::RELIABILITY)?;
+    let Some(node) = section.get("methods") else { return Ok(ReliabilityPlan::default()) };
+    let Value::Array(items) = &node.value else {
+        let problem = format!("this is {}", node.value.described());
+        return Err(node.place.error(problem, "expected a list of methods, such as [\"form\"]"));
+    };
+    let mut methods: Vec<String> = Vec::new();
+    for item in items {
+        let known = |name: &str| keys::METHODS.iter().find(|&&known| known == name).copied();
+        let method = read::choice(item, "method", keys::METHODS, known)?.to_owned();
+        if methods.contains(&method) {
+            return Err(item
+                .place
+                .error("this method is named twice", "expected each method once"));
+        }
+        methods.push(method);
+    }
+    Ok(ReliabilityPlan { methods: Some(methods) })
+}
+
+/// Checks the keys at the top of a study.
+pub(super) fn check_top(entries: &[(Key, Node)]) -> Result<()> {
+    let names: Vec<&str> = keys::STUDY.iter().map(|info| info.name).collect();
+    match entries.iter().find(|(key, _)| !names.contains(&key.name.as_str())) {
+        Some((key, _)) => Err(unknown_key(key, "", &names)),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,107 @@
+//! The keys of studies and cards: the one list that parsing, the JSON Schema and suggestions share.
+
+/// A key, for the parser and for the schema.
+pub(super) struct KeyInfo {
+    /// The key.
+    pub name: &'static str,
+    /// What it means, in one line.
+    pub description: &'static str,
+}
+
+const fn key(name: &'static str, description: &'static str) -> KeyInfo {
+    KeyInfo { name, description }
+}
+
+/// Keys at the top of a study.
+pub(super) static STUDY: &[KeyInfo] = &[
+    key("title", "what the study is called"),
+    key(
+        "card",
+        "the card that says what is uncertain, relative to this file; of a list, later cards win",
+    ),
+    key("model", "the equations that are integrated"),
+    key("design", "nominal values that differ from the baseline, by dotted path"),
+    key("limits", "what a descent must not breach: outcome = { max = …, min = … }"),
+    key("requirement", "what the verdict is held against"),
+    key("sampling", "how the inputs are sampled"),
+    key("numerics", "how accurately a descent is integrated"),
+    key("sensitivity", "how the sensitivity indices are estimated"),
+    key("reliability", "how small probabilities are estimated"),
+];
+
+/// Keys of `[requirement]`.
+pub(super) static REQUIREMENT: &[KeyInfo] = &[
+    key("reliability", "smallest acceptable probability that no limit is breached"),
+    key("confidence", "confidence with which the reliability must be demonstrated"),
+];
+
+/// Keys of `[sampling]`.
+pub(super) static SAMPLING: &[KeyInfo] = &[
+    key("design", "the design of experiment"),
+    key("samples", "number of descents in all, over all replicates"),
+    key("seed", "seed of every random stream"),
+    key("replicates", "independent replicates of a randomised design; the error is read from them"),
+];
+
+/// Keys of `[numerics]`.
+pub(super) static NUMERICS: &[KeyInfo] =
+    &[key("tolerance", "relative error asked of the outcomes of a descent")];
+
+/// Keys of `[sensitivity]`.
+pub(super) static SENSITIVITY: &[KeyInfo] = &[
+    key("base_samples", "rows of each block of the pick-freeze design; 0 leaves the indices out"),
+    key("bootstrap", "bootstrap resamples behind each interval"),
+];
+
+/// Keys of `[reliability]`.
+pub(super) static RELIABILITY: &[KeyInfo] = &[key(
+    "methods",
+    "the methods that estimate small probabilities, besides the samples themselves",
+)];
+
+/// Keys of one limit.
+pub(super) static LIMIT: &[KeyInfo] = &[
+    key("max", "the outcome may be at most this"),
+    key("min", "the outcome must be at least this"),
+];
+
+/// Keys at the top of a card that are not parameters.
+pub(super) static CARD: &[KeyInfo] = &[
+    key("title", "what the card is called"),
+    key("description", "what the card is about"),
+    key("correlation", "dependence between two inputs, as a Gaussian copula"),
+];
+
+/// Keys of an input that do not belong to its law.
+pub(super) static INPUT: &[KeyInfo] = &[
+    key("law", "the law of the distribution"),
+    key("known", "when the value becomes known"),
+    key("source", "where the distribution comes from"),
+    key("group", "the factor to which the input belongs in grouped sensitivities"),
+    key("each_surface", "one independent input per working surface (brake.gap only)"),
+    key("lower", "lower end: the law's own bound, or where it is truncated"),
+    key("upper", "upper end: the law's own bound, or where it is truncated"),
+    key("truncation_lower", "where a law that has its own lower bound is truncated"),
+    key("truncation_upper", "where a law that has its own upper bound is truncated"),
+];
+
+/// Keys of a correlation.
+pub(super) static CORRELATION: &[KeyInfo] = &[
+    key("between", "the two inputs, by dotted path"),
+    key("normal", "correlation of the copula's normal variables"),
+    key("spearman", "Spearman's rank correlation"),
+    key("kendall", "Kendall's rank correlation"),
+    key("source", "where the coefficient comes from"),
+];
+
+/// Names of the methods that estimate small probabilities.
+pub(super) static METHODS: &[&str] = &[
+    "crude",
+    "form",
+    "sorm",
+    "importance-sampling",
+    "subset-simulation",
+    "line-sampling",
+    "directional-sampling",
+    "cross-entropy",
+];

@@ -1,0 +1,8 @@
+//! Laws, special functions and dependence against SciPy, mpmath and published tables.
+
+mod copula;
+mod families;
+mod properties;
+mod published;
+mod reference;
+mod special;

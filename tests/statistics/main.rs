@@ -1,0 +1,12 @@
+mod bounds;
+mod demonstration;
+mod designs;
+mod given_data;
+mod latin_hypercube;
+mod low_discrepancy;
+mod probability;
+mod quantiles;
+mod replicates;
+mod score;
+mod sensitivity_models;
+mod sobol_indices;

@@ -1,0 +1,9 @@
+//! Studies and cards: what is read, what is refused and how it is said.
+
+mod corpus;
+mod mutations;
+mod overrides;
+mod schema;
+mod shipped;
+mod sources;
+mod units;

@@ -1,0 +1,240 @@
+//! What the shipped study and card mean, and what good texts are read as.
+
+use super::sources::{card_alone, shipped, study_with};
+use reeldown::descent::{Model, Outcome, OutcomeQuantity};
+use reeldown::physics::design::{Design, Target};
+use reeldown::physics::parameters::Parameter;
+use reeldown::study::{Known, LimitKind, Study};
+use reeldown::uncertainty::{Law, Marginal};
+
+const INCH: f64 = 0.0254;
+
+#[test]
+fn published_the_embedded_study_is_the_papers_case() {
+    let study = Study::load(None, &[]).expect("the embedded study is good");
+    assert_eq!(study.title, "HABE reel-down, launch day");
+    assert_eq!(study.model, Model::Dynamic);
+    assert_eq!(study.design, Design::baseline());
+    let limits: Vec<(OutcomeQuantity, LimitKind, f64)> =
+        study.limits.iter().map(|limit| (limit.outcome, limit.kind, limit.value)).collect();
+    let max = LimitKind::Max;
+    assert_eq!(
+        limits,
+        [
+            (OutcomeQuantity::Time, max, 210.0),
+            (OutcomeQuantity::FinalVelocity, max, 2.5 * 0.3048),
+            (OutcomeQuantity::PeakFluidTemperature, max, (450.0 + 459.67) / 1.8),
+        ]
+    );
+    let requirement = study.requirement.expect("a requirement");
+    assert_eq!((requirement.reliability, requirement.confidence), (0.99, 0.90));
+    assert_eq!((study.sampling.samples, study.sampling.seed), (100_000, 1993));
+    assert_eq!(study.sampling.replicates, 1);
+    assert!(study.notes.is_empty(), "{:?}", study.notes);
+}
+
+#[test]
+fn published_the_card_is_the_table_of_what_is_uncertain() {
+    let study = Study::load(None, &[]).expect("the embedded study is good");
+    assert_eq!(study.inputs.len(), 23);
+    assert!(study.joint.is_independent());
+    let gap = Marginal::new(
+        Law::normal(0.062 * INCH, 0.003 * INCH).expect("a law"),
+        Some(0.053 * INCH),
+        Some(0.071 * INCH),
+    )
+    .expect("a marginal");
+    for (surface, input) in study.inputs.iter().take(14).enumerate() {
+        assert_eq!(input.target, Target::gap(surface));
+        assert_eq!(input.marginal, gap);
+        assert_eq!(input.known, Known::AtBuild);
+        assert_eq!(input.group.as_deref(), Some("brake.gap"));
+    }
+    let lognormal =
+        |median, cv| Marginal::untruncated(Law::lognormal_median_cv(median, cv).expect("a law"));
+    let of = |parameter| {
+        let target = Target::whole(parameter);
+        let input = study.inputs.iter().find(|input| input.target == target);
+        input.unwrap_or_else(|| panic!("{} is uncertain", target.path())).marginal.clone()
+    };
+    assert_eq!(of(Parameter::FluidShearFactor), lognormal(1.0, 0.08));
+    assert_eq!(of(Parameter::ThermalFluidCapacity), lognormal(3990.0, 0.08));
+    assert_eq!(of(Parameter::ThermalRotorCapacity), lognormal(21_100.0, 0.08));
+    assert_eq!(of(Parameter::ThermalHousingCapacity), lognormal(14_600.0, 0.08));
+    assert_eq!(of(Parameter::ThermalFluidRotorConductance), lognormal(680.0, 0.15));
+    assert_eq!(of(Parameter::ThermalFluidHousingConductance), lognormal(47.5, 0.15));
+    assert_eq!(of(Parameter::ThermalRotorHousingConductance), lognormal(9.5, 0.15));
+    let normal = |mean, sd| Law::normal(mean, sd).expect("a law");
+    assert_eq!(of(Parameter::FluidAveragingOffset), Marginal::untruncated(normal(0.0, 0.1)));
+    let kelvin = |fahrenheit: f64| (fahrenheit + 459.67) / 1.8;
+    let start =
+        Marginal::new(normal(kelvin(60.0), 10.0 / 1.8), Some(kelvin(0.0)), Some(kelvin(100.0)));
+    assert_eq!(of(Parameter::InitialTemperature), start.expect("a marginal"));
+}
+
+#[test]
+fn property_margins_are_negative_beyond_the_limit() {
+    let study = shipped(&["limits.time.min=1 min"]).expect("a study");
+    let mut outcome = Outcome { deployed: true, values: [0.0; 10] };
+    outcome.values[OutcomeQuantity::Time as usize] = 215.0;
+    let margins: Vec<(String, f64)> =
+        study.limits.iter().take(2).map(|limit| (limit.name(), limit.margin(&outcome))).collect();
+    assert_eq!(margins, [("time".to_owned(), -5.0), ("time_min".to_owned(), 155.0)]);
+    assert_eq!(study.limits[0].margin_column(), "time_margin_s");
+    // A descent that did not deploy carries the time limit of a descent.
+    outcome.deployed = false;
+    outcome.values[OutcomeQuantity::Time as usize] = reeldown::descent::outcome::TIME_LIMIT_S;
+    assert!(study.limits[0].margin(&outcome) < 0.0);
+}
+
+#[test]
+fn property_every_spelling_of_a_study_is_read() {
+    let study = study_with(include_str!("accepted/study_full.toml"), "", &[]).expect("a study");
+    assert_eq!(study.model, Model::QuasiSteady);
+    assert_eq!(study.design.surfaces(), 6);
+    assert_eq!(study.design.gaps()[5], 0.065 * INCH);
+    assert_eq!(study.design.gaps()[0], 0.062 * INCH);
+    assert_eq!(study.design.get(Parameter::BalloonFreeLift), 0.06);
+    assert_eq!(study.design.get(Parameter::BalloonMass), 2200.0 * 0.453_592_37);
+    assert_eq!(study.limits.len(), 11);
+    assert_eq!(study.requirement.map(|requirement| requirement.reliability), Some(0.9973));
+    assert_eq!(study.inputs.len(), 6 + 9);
+    assert!(
+        study.notes.iter().any(|note| note.contains("initial.temperature")),
+        "{:?}",
+        study.notes
+    );
+    assert!(study.validate().is_ok());
+}
+
+#[test]
+fn property_every_law_is_read() {
+    let study = card_alone(include_str!("accepted/card_laws.toml")).expect("a card");
+    assert_eq!(study.inputs.len(), 14 + 17);
+    assert!(study.inputs.windows(2).all(|pair| pair[0].target < pair[1].target));
+    let of = |target: Target| {
+        let found = study.inputs.iter().find(|input| input.target == target);
+        found.unwrap_or_else(|| panic!("{} is uncertain", target.path()))
+    };
+    let whole = |parameter| of(Target::whole(parameter)).marginal.clone();
+    assert_eq!(of(Target::gap(2)).group.as_deref(), Some("measured"));
+    assert_eq!(of(Target::gap(3)).marginal.mean(), 0.0016);
+    assert_eq!(of(Target::gap(4)).group.as_deref(), Some("brake.gap"));
+    // Moments about a location, by the definitions of the laws; 1e-12 is a hundred roundings.
+    let close = |a: f64, b: f64| (a - b).abs() <= 1e-12 * b.abs();
+    let added = whole(Parameter::BalloonAddedMass);
+    assert!(close(added.mean(), 2000.0) && close(added.sd(), 200.0));
+    let drag = whole(Parameter::BalloonDragArea);
+    assert!(close(drag.mean(), 500.0) && close(drag.sd(), 50.0));
+    assert_eq!(drag.support().0, 450.0);
+    let housing = whole(Parameter::ThermalHousingCapacity);
+    assert!(close(housing.mean(), 14_600.0) && close(housing.sd(), 1000.0));
+    assert_eq!(study.correlations.len(), 3);
+    assert!(!study.joint.is_independent());
+    let places: Vec<(usize, usize)> = study.correlations.iter().map(|c| c.between).collect();
+    // Both radii come before the gaps.
+    assert!(places.contains(&(2, 4)), "{places:?}");
+}
+
+#[test]
+fn property_one_statement_correlates_every_two_surfaces() {
+    let study = card_alone(include_str!("accepted/card_correlated_gaps.toml")).expect("a card");
+    assert_eq!(study.correlations.len(), 14 * 13 / 2);
+}
+
+#[test]
+fn property_the_digest_sees_numbers_and_not_their_spelling() {
+    let digest = |text: &str| study_with(text, "", &[]).expect("a study").digest();
+    let base = "title = \"a\"\ncard = \"habe.toml\"\n[limits]\ntime = { max = \"210 s\" }\n";
+    let respelt = "# b\ncard = [\"habe.toml\"]\ntitle = \"b\"\nlimits.time.max = \"3.5 min\"\nmodel = \"dynamic\"\n";
+    assert_eq!(digest(base), digest(respelt));
+    for change in [
+        "limits.time.max=211 s",
+        "sampling.seed=7",
+        "numerics.tolerance=1e-7",
+        "brake.gap[3]=0.063 in",
+        "model=quasi-steady",
+        "brake.gap.sd=0.004 in",
+        "fluid.shear_factor.known=at build",
+        "requirement={reliability=0.9, confidence=0.9}",
+        "sensitivity.bootstrap=100",
+    ] {
+        let changed = study_with(base, "", &[change]).expect(change);
+        assert_ne!(changed.digest(), digest(base), "{change}");
+    }
+    let study = study_with(base, "", &[]).expect("a study");
+    let files = study.file_digests();
+    assert_eq!(files.len(), 2);
+    assert!(files.iter().all(|(_, digest)| digest.len() == 64));
+}
+
+#[test]
+fn property_later_cards_win_input_by_input() {
+    let own = "[fluid.shear_factor]\nlaw = \"uniform\"\nlower = 0.9\nupper = 1.1\nknown = \"never\"\nsource = \"b\"\n";
+    let text = "title = \"a\"\ncard = [\"habe.toml\", \"card.toml\"]\n";
+    let study = study_with(text, own, &[]).expect("a study");
+    assert_eq!(study.inputs.len(), 23);
+    let shear = Target::whole(Parameter::FluidShearFactor);
+    let input = study.inputs.iter().find(|input| input.target == shear).expect("an input");
+    assert_eq!((input.marginal.support(), input.source.as_str()), ((0.9, 1.1), "b"));
+}
+
+#[test]
+fn property_every_parameter_is_listed_with_its_source() {
+    let study = shipped(&["initial.temperature=0 °F", "brake.gap[3]=0.07 in"]).expect("a study");
+    let rows = study.resolved();
+    assert_eq!(rows.len(), 32 + 1);
+    let row = |path: &str| rows.iter().find(|row| row.path == path).expect("a row");
+    assert_eq!(row("initial.temperature").text, "0 °F (255.372 K)");
+    assert_eq!(row("initial.temperature").source, "--set: 0 °F");
+    assert_eq!(row("brake.gap").uncertain.as_ref().map(|law| law.inputs), Some(14));
+    assert_eq!(row("brake.gap[3]").text, "0.07 in (0.001778 m)");
+    assert_eq!(row("fluid.viscosity_temperature").text, "1740 K");
+    assert!(row("fluid.nominal_viscosity").source.contains("study.toml"));
+    assert_eq!(row("reel.inertia").source, "assumed");
+}
+
+#[test]
+fn property_impossible_draws_are_foretold() {
+    let card = "[fluid.density]\nlaw = \"normal\"\nmean = \"970 kg/m³\"\nsd = \"500 kg/m³\"\nknown = \"never\"\nsource = \"a\"\n";
+    let study = card_alone(card).expect("a study");
+    assert!(study.notes.iter().any(|note| note.contains("impossible")), "{:?}", study.notes);
+}
+
+#[test]
+fn property_studies_are_read_from_files() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let path = root.join("reports/habe/study.toml");
+    let study = Study::load(Some(&path), &[]).expect("the published study");
+    let embedded = Study::load(None, &[]).expect("the embedded study");
+    assert_eq!(study.digest(), embedded.digest());
+    assert_eq!(study.study_text, embedded.study_text);
+    assert_eq!(study.card_texts[0].1, embedded.card_texts[0].1);
+    let missing = Study::load(Some(&root.join("reports/habe/absent.toml")), &[]);
+    let message = missing.expect_err("no such study").to_string();
+    assert!(message.starts_with("cannot read") && message.contains("no such file"), "{message}");
+}
+
+#[test]
+fn property_observed_values_are_read_beside_their_card() {
+    let directory = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("observed");
+    std::fs::create_dir_all(directory.join("cards")).expect("a directory");
+    let write = |name: &str, text: &str| std::fs::write(directory.join(name), text).expect(name);
+    write("study.toml", "title = \"observed\"\ncard = \"cards/card.toml\"\n");
+    write(
+        "cards/card.toml",
+        "[brake.gap]\nlaw = \"empirical\"\nfile = \"gaps.csv\"\ncolumn = \"gap_m\"\neach_surface = true\nknown = \"at build\"\nsource = \"measured\"\n",
+    );
+    write("cards/gaps.csv", "surface,gap_m\n1,0.0015\n2,0.0017\n");
+    let load = || Study::load(Some(&directory.join("study.toml")), &[]);
+    let study = load().expect("a study");
+    assert_eq!(study.inputs.len(), 14);
+    // The mean of two values is one rounding from exact.
+    assert!((study.inputs[0].marginal.mean() - 0.0016).abs() < 1e-18);
+    write("cards/gaps.csv", "surface,gap_m\n1,0.0015\n2,-0.0017\n");
+    let message = load().expect_err("an impossible gap").to_string();
+    assert!(message.contains("card.toml:3:8: gaps.csv holds -0.0017"), "{message}");
+    write("cards/gaps.csv", "surface,gap_m\n1,none\n");
+    let message = load().expect_err("no number").to_string();
+    assert!(message.contains("line 2: \"none\" is not a finite number"), "{message}");
+}
