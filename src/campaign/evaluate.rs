@@ -88,7 +88,7 @@ impl<'a> Ensemble<'a> {
             })
             .collect::<Result<_>>()?;
         let complete: Vec<OutcomeTable> = batches.into_iter().map_while(|batch| batch).collect();
-        Ok(join(range.start, self.dimension(), &complete))
+        Ok(OutcomeTable::joined(range.start, self.dimension(), &complete))
     }
 
     /// Outcomes at standard-normal points (rows), on every core.
@@ -122,7 +122,7 @@ impl<'a> Ensemble<'a> {
                 table
             })
             .collect();
-        join(0, self.dimension(), &batches)
+        OutcomeTable::joined(0, self.dimension(), &batches)
     }
 
     /// Integrates the rows of a table from its inputs. An impossible draw is a fault of its row.
@@ -147,24 +147,4 @@ impl<'a> Ensemble<'a> {
             table.record(k, result);
         }
     }
-}
-
-/// Consecutive tables as one.
-fn join(first: u64, inputs: usize, parts: &[OutcomeTable]) -> OutcomeTable {
-    let rows = parts.iter().map(OutcomeTable::rows).sum();
-    let mut whole = OutcomeTable::new(first, rows, inputs);
-    let mut at = 0;
-    for part in parts {
-        let end = at + part.rows();
-        for j in 0..inputs {
-            whole.inputs.column_mut(j)[at..end].copy_from_slice(part.inputs.column(j));
-        }
-        for j in 0..whole.outcomes.columns() {
-            whole.outcomes.column_mut(j)[at..end].copy_from_slice(part.outcomes.column(j));
-        }
-        whole.deployed[at..end].copy_from_slice(&part.deployed);
-        whole.faults[at..end].copy_from_slice(&part.faults);
-        at = end;
-    }
-    whole
 }

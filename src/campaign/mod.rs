@@ -8,6 +8,7 @@ mod evaluate;
 mod limit_state;
 mod pick_freeze;
 mod record;
+mod verification;
 
 use crate::error::{Error, Result};
 use crate::outcomes::OutcomeTable;
@@ -21,6 +22,7 @@ pub use evaluate::{Ensemble, nominal};
 pub use limit_state::DescentLimitState;
 pub use pick_freeze::{CORRELATED, PickFreezeOutcomes, factors, run_pick_freeze};
 pub use record::{FaultedSample, OutcomeSummary, Record};
+pub use verification::{NEAR, NearLimit, Verification, verify};
 
 /// Samples in a row group: the unit of writing, and of resuming.
 pub const ROW_GROUP: u64 = 65_536;

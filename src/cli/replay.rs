@@ -26,7 +26,7 @@ pub(super) fn replay(arguments: &ReplayArguments) -> Result<Ending> {
     }
     let recorded = reader.read(&study, arguments.index, 1)?;
     let again = compute(&study, arguments.index)?;
-    if !same_bits(&recorded, &again) {
+    if !same_bits((&recorded, 0), (&again, 0)) {
         let reason = format!("sample {} computed again differs from its row", arguments.index);
         let help = "the file was changed, or this build computes other bits: please report it";
         return Err(Error::file(path, "replay", reason, help));
@@ -53,7 +53,7 @@ pub(super) fn replay(arguments: &ReplayArguments) -> Result<Ending> {
 }
 
 /// One sample of a study.
-fn compute(study: &Study, index: u64) -> Result<OutcomeTable> {
+pub(super) fn compute(study: &Study, index: u64) -> Result<OutcomeTable> {
     let sampler = campaign::sampler(study)?;
     let ensemble = Ensemble::new(study);
     let mut point = Columns::new(1, ensemble.dimension());
@@ -61,13 +61,14 @@ fn compute(study: &Study, index: u64) -> Result<OutcomeTable> {
     Ok(ensemble.at_uniform(&point, &Progress::default()))
 }
 
-/// Whether two tables of one sample hold the same bits; NaN is NaN.
-fn same_bits(a: &OutcomeTable, b: &OutcomeTable) -> bool {
-    let bits = |t: &OutcomeTable| -> Vec<u64> {
-        let numbers = t.inputs.row(0).into_iter().chain(t.outcomes.row(0));
+/// Whether a row of one table and a row of another hold the same bits; NaN is NaN.
+pub(super) fn same_bits(a: (&OutcomeTable, usize), b: (&OutcomeTable, usize)) -> bool {
+    let bits = |(table, k): (&OutcomeTable, usize)| -> Vec<u64> {
+        let numbers = table.inputs.row(k).into_iter().chain(table.outcomes.row(k));
         numbers.map(|x| if x.is_nan() { u64::MAX } else { x.to_bits() }).collect()
     };
-    bits(a) == bits(b) && a.deployed == b.deployed && a.faults == b.faults
+    let rest = |(table, k): (&OutcomeTable, usize)| (table.deployed[k], table.faults[k]);
+    bits(a) == bits(b) && rest(a) == rest(b)
 }
 
 fn object(study: &Study, index: u64, table: &OutcomeTable) -> Map<String, Value> {

@@ -3,13 +3,16 @@
 use super::arguments::RunArguments;
 use super::output::{say, say_error, stdout_style};
 use super::watch::{Watch, stop_on_interrupt};
-use super::{Ending, parentage};
+use super::{Ending, parentage, replay};
 use crate::campaign::{self, Progress, ROW_GROUP, Record};
 use crate::error::{Error, Result};
 use crate::findings::{self, DriversFinding, Evidence, Findings, VerdictWord};
 use crate::numerics::interval::Estimate;
+use crate::outcomes::OutcomeTable;
 use crate::render;
-use crate::store::{Field, OutcomesReader, OutcomesWriter, Parentage, write_table, write_text};
+use crate::store::{
+    Field, OutcomesReader, OutcomesWriter, Parentage, refuse_obstacle, write_table, write_text,
+};
 use crate::study::Study;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -17,6 +20,14 @@ use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 /// The table of samples.
 const OUTCOMES: &str = "outcomes.parquet";
+/// The findings as one tree.
+const FINDINGS: &str = "findings.json";
+/// The report.
+const REPORT: &str = "report.md";
+/// The table of sensitivity indices.
+const SENSITIVITY: &str = "sensitivity.parquet";
+/// What may differ between two runs of one study.
+const PROVENANCE: &str = "provenance.json";
 
 /// Runs a study and writes its report and tables.
 pub(super) fn run(arguments: &RunArguments) -> Result<Ending> {
@@ -32,6 +43,10 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Ending> {
     study.design.validate()?;
     let directory =
         arguments.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(arguments.study.name()));
+    // What stands in the way is said now, not after the descents.
+    for name in [OUTCOMES, FINDINGS, REPORT, SENSITIVITY, PROVENANCE] {
+        refuse_obstacle(&directory.join(name))?;
+    }
     campaign::with_threads(arguments.threads.map(usize::from), || {
         Run { arguments, study: &study, directory: &directory, parentage: parentage::of(&study) }
             .carry_out()
@@ -71,6 +86,7 @@ impl Run<'_> {
             study: self.study,
             record: &record,
             nominal: campaign::nominal(self.study),
+            verification: campaign::verify(self.study, &record)?,
             pick_freeze,
             command: self.command(),
         })?;
@@ -87,32 +103,56 @@ impl Run<'_> {
         let mut record = Record::new(self.study, sampler.replicates())?;
         let before = if self.arguments.resume { self.earlier(&path)? } else { None };
         let mut writer = OutcomesWriter::create(&path, self.study, &self.parentage)?;
-        let mut start = 0;
+        let inputs = self.study.inputs.len();
+        let (mut start, mut unfinished) = (0, None);
         if let Some(reader) = &before {
-            let whole = if reader.rows() >= samples {
-                samples
-            } else {
-                reader.rows() / ROW_GROUP * ROW_GROUP
-            };
-            while start < whole {
-                let rows = (whole - start).min(ROW_GROUP);
+            let kept = reader.rows().min(samples);
+            while start < kept {
+                let rows = (kept - start).min(ROW_GROUP);
                 let table = reader.read(self.study, start, rows as usize)?;
-                record.absorb(&table);
-                writer.write(&table)?;
+                self.verify(&path, &table)?;
                 start += rows;
+                if rows < ROW_GROUP && start < samples {
+                    // The row group goes on with the samples that are computed next.
+                    unfinished = Some(table);
+                } else {
+                    record.absorb(&table);
+                    writer.write(&table)?;
+                }
             }
         }
         {
             let _watch = Watch::start(progress, samples - start, "descents");
-            let mut sink = |table| {
+            let mut sink = |table: OutcomeTable| {
+                let table = match unfinished.take() {
+                    Some(first) => OutcomeTable::joined(first.first, inputs, &[first, table]),
+                    None => table,
+                };
                 record.absorb(&table);
                 writer.write(&table)
             };
             campaign::run(self.study, start..samples, progress, &mut sink)?;
         }
+        if let Some(table) = unfinished {
+            // Stopped before the first new sample.
+            record.absorb(&table);
+            writer.write(&table)?;
+        }
         writer.finish()?;
         let computed = record.counts().samples() - start;
         Ok((record, computed))
+    }
+
+    /// Computes the last sample of a table that was read once more, and refuses a file that differs.
+    fn verify(&self, path: &Path, table: &OutcomeTable) -> Result<()> {
+        let last = table.first + table.rows() as u64 - 1;
+        let again = replay::compute(self.study, last)?;
+        if replay::same_bits((table, table.rows() - 1), (&again, 0)) {
+            return Ok(());
+        }
+        let reason = format!("sample {last} computed again differs from its row");
+        let help = "the file was changed, or this build computes other bits: run without --resume";
+        Err(Error::file(path, "resume", reason, help))
     }
 
     /// The run to continue, if there is one and it is of this study.
@@ -168,9 +208,9 @@ impl Run<'_> {
 
     fn write(&self, findings: &Findings) -> Result<()> {
         let at = |name: &str| self.directory.join(name);
-        write_text(&at("findings.json"), &json(findings)?)?;
-        write_text(&at("report.md"), &render::markdown(findings)?)?;
-        write_sensitivity(&at("sensitivity.parquet"), &findings.drivers, &self.parentage)
+        write_text(&at(FINDINGS), &json(findings)?)?;
+        write_text(&at(REPORT), &render::markdown(findings)?)?;
+        write_sensitivity(&at(SENSITIVITY), &findings.drivers, &self.parentage)
     }
 
     /// What may differ between two runs of the same study: kept out of everything else.
@@ -190,7 +230,7 @@ impl Run<'_> {
             "samples_read_again": self.study.sampling.samples - computed,
             "study_digest": self.study.digest(),
         });
-        write_text(&self.directory.join("provenance.json"), &format!("{provenance:#}\n"))
+        write_text(&self.directory.join(PROVENANCE), &format!("{provenance:#}\n"))
     }
 
     fn report(&self, findings: &Findings) -> Result<Ending> {
@@ -198,7 +238,7 @@ impl Run<'_> {
             say(&json(findings)?)?;
         } else if !self.arguments.quiet {
             let summary = render::terminal(findings, stdout_style());
-            say(&format!("{summary}\nreport: {}", self.directory.join("report.md").display()))?;
+            say(&format!("{summary}\nreport: {}", self.directory.join(REPORT).display()))?;
         }
         Ok(match findings.verdict.word {
             VerdictWord::Met | VerdictWord::NoRequirement => Ending::Done,

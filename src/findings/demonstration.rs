@@ -8,6 +8,7 @@ use crate::reliability::demonstration::{Demonstration, Requirement, Verdict, min
 use crate::reliability::probability::Proportion;
 use crate::reliability::replicates::from_replicate_counts;
 use crate::study::Study;
+use crate::units::number;
 use serde::Serialize;
 
 /// How many rows the failures-allowed table has: 0 to 3 failures.
@@ -59,14 +60,10 @@ pub struct VerdictFinding {
 
 /// A probability or share as a person reads it.
 pub(super) fn percent(share: f64) -> String {
-    let percent = 100.0 * share;
-    match percent {
-        p if p == 0.0 => "0 %".to_owned(),
-        p if p >= 10.0 => format!("{p:.2} %"),
-        p if p >= 0.1 => format!("{p:.3} %"),
-        p if p >= 0.001 => format!("{p:.5} %"),
-        _ => format!("{share:.3e}"),
+    if share > 0.0 && share < 1e-5 {
+        return format!("{share:.2e}");
     }
+    format!("{} %", number(100.0 * share, 4))
 }
 
 /// The verdict of a study's samples.

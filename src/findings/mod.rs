@@ -5,9 +5,10 @@ mod demonstration;
 mod drivers;
 mod inputs;
 mod margins;
+mod numerical;
 mod probabilities;
 
-use crate::campaign::{self, PickFreezeOutcomes, Record};
+use crate::campaign::{self, PickFreezeOutcomes, Record, Verification};
 use crate::descent::{Fault, Outcome, OutcomeQuantity};
 use crate::error::Result;
 use crate::study::Study;
@@ -18,6 +19,7 @@ pub use demonstration::{Decision, VerdictFinding, VerdictWord};
 pub use drivers::{DriverOutput, DriversFinding, FactorFinding};
 pub use inputs::InputFinding;
 pub use margins::{MarginFinding, MarginQuantile};
+pub use numerical::{NumericalFinding, NumericalLimit};
 pub use probabilities::{EventKind, ProbabilityFinding};
 
 /// Confidence of the two-sided intervals.
@@ -46,6 +48,8 @@ pub struct Findings {
     pub exceptions: ExceptionFinding,
     /// What is uncertain.
     pub inputs: Vec<InputFinding>,
+    /// What the integrator's own error could have done.
+    pub numerical: NumericalFinding,
     /// How the numbers were obtained, and what they do not say.
     pub method: MethodFinding,
     /// What it takes to have the same numbers again.
@@ -138,6 +142,8 @@ pub struct Evidence<'a> {
     pub record: &'a Record,
     /// Its nominal descent.
     pub nominal: std::result::Result<Outcome, Fault>,
+    /// Samples of it computed again by the plain integrator.
+    pub verification: Verification,
     /// Its pick-freeze design, or why there is none.
     pub pick_freeze: std::result::Result<PickFreezeOutcomes, String>,
     /// The command that was given, to be given again.
@@ -162,6 +168,7 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
         drivers: drivers::drivers(study, &evidence.pick_freeze)?,
         exceptions: exceptions(record),
         inputs: inputs::inputs(study),
+        numerical: numerical::numerical(study, record, &evidence.verification),
         method: MethodFinding {
             model: study.model.name(),
             design: sampler.describe(),

@@ -46,6 +46,8 @@ impl<const N: usize> Sub for Dual<N> {
     }
 }
 
+// Products and quotients of derivatives follow the product and quotient rules, sums and all.
+#[allow(clippy::suspicious_arithmetic_impl)]
 impl<const N: usize> Mul for Dual<N> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
@@ -54,6 +56,7 @@ impl<const N: usize> Mul for Dual<N> {
     }
 }
 
+#[allow(clippy::suspicious_arithmetic_impl)]
 impl<const N: usize> Div for Dual<N> {
     type Output = Self;
     fn div(self, other: Self) -> Self {

@@ -4,5 +4,6 @@ pub mod columns;
 pub mod dual;
 pub mod elementary;
 pub mod interval;
+pub mod lanes;
 pub mod real;
 pub mod special;

@@ -118,6 +118,7 @@ pub(super) struct Method {
     pub model: &'static str,
     pub design: String,
     pub tolerance: String,
+    pub numerical: String,
     pub caveats: Vec<String>,
 }
 
@@ -167,6 +168,7 @@ pub(super) fn view(findings: &Findings) -> View {
             model: findings.method.model,
             design: findings.method.design.clone(),
             tolerance: format!("{:e}", findings.method.tolerance),
+            numerical: findings.numerical.statement.clone(),
             caveats: findings.method.caveats.clone(),
         },
         reproduction: Reproduction {
@@ -199,9 +201,8 @@ fn verdict(findings: &Findings) -> Verdict {
             .outputs
             .iter()
             .find(|output| {
-                Some(&output.name["breach.".len().min(output.name.len())..])
-                    == p.limits.first().map(String::as_str)
-                    && output.breach
+                output.breach
+                    && output.name.strip_prefix("breach.") == p.limits.first().map(String::as_str)
             })
             .and_then(|output| ranked(output).into_iter().next())
             .and_then(|factor| Some((factor, factor.indices.total.value?)));
@@ -345,11 +346,18 @@ fn driver_table(output: &DriverOutput) -> DriverTable {
         sentence +=
             &format!(" No single member of a group has a total index above {strongest:.3}.");
     }
-    let mut explanations: Vec<String> = shown
-        .iter()
-        .filter_map(|f| f.indices.explanation.as_ref().map(|text| format!("`{}`: {text}.", f.name)))
+    let mut explained: Vec<(&str, Vec<&str>)> = Vec::new();
+    for factor in shown {
+        let Some(text) = factor.indices.explanation.as_deref() else { continue };
+        match explained.iter_mut().find(|(known, _)| *known == text) {
+            Some((_, names)) => names.push(&factor.name),
+            None => explained.push((text, vec![&factor.name])),
+        }
+    }
+    let explanations: Vec<String> = explained
+        .into_iter()
+        .map(|(text, names)| format!("{}: {text}.", names.join(", ")))
         .collect();
-    explanations.dedup();
     DriverTable {
         title: output.title.clone(),
         sentence,

@@ -4,6 +4,7 @@
 //! outcomes in parallel. A sample that could not be computed is NaN: it is left out and counted.
 
 // From a design of their own.
+mod block_sums;
 pub mod bootstrap;
 pub mod pick_freeze;
 mod rare_events;

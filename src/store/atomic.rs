@@ -20,6 +20,7 @@ impl AtomicFile {
     /// # Errors
     /// If the directory or the file cannot be made.
     pub fn create(path: &Path) -> Result<Self> {
+        refuse_obstacle(path)?;
         let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty());
         if let Some(directory) = directory {
             fs::create_dir_all(directory).map_err(|reason| {
@@ -78,6 +79,21 @@ impl Drop for AtomicFile {
     }
 }
 
+/// Refuses a place where a file would replace something that is not a file: a directory, or a device,
+/// which a rename would quietly do away with.
+///
+/// # Errors
+/// If there is such a thing at `path`.
+pub fn refuse_obstacle(path: &Path) -> Result<()> {
+    let kind = match fs::metadata(path) {
+        Ok(there) if there.is_dir() => "it is a directory",
+        Ok(there) if !there.is_file() => "it is not a regular file",
+        // What is not there, or cannot be looked at, is for the system to judge when it is written.
+        _ => return Ok(()),
+    };
+    Err(Error::file(path, "write", kind, "name another place, or move it away"))
+}
+
 /// The error of a file that could not be written.
 pub(super) fn cannot_write(path: &Path, reason: impl std::fmt::Display) -> Error {
     let help = "nothing was left under this name; free some space or name another place with --out";
@@ -112,6 +128,14 @@ mod tests {
         assert_eq!(fs::read_to_string(&path).unwrap(), "second");
         assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1, "no .part is left");
         fs::remove_dir_all(&directory).unwrap();
+    }
+
+    #[test]
+    fn property_nothing_but_a_file_is_replaced() {
+        for place in ["/", "/dev/null"] {
+            let error = write_text(Path::new(place), "x").unwrap_err().to_string();
+            assert!(error.starts_with(&format!("cannot write {place}: it is ")), "{error}");
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! One column of numbers out of a user's Parquet file, for empirical laws.
 
-use polars::prelude::{DataType, ParquetReader, SerReader};
+use super::damage;
+use polars::prelude::{DataType, ParquetReader, PolarsError, SerReader};
 use std::fs::File;
 use std::path::Path;
 
@@ -10,15 +11,14 @@ use std::path::Path;
 /// If the file cannot be read, has no such column, or the column holds no numbers or a null.
 pub fn read_number_column(path: &Path, column: &str) -> Result<Vec<f64>, String> {
     let file = File::open(path).map_err(|reason| reason.to_string())?;
-    let frame = ParquetReader::new(file)
-        .with_columns(Some(vec![column.to_owned()]))
-        .finish()
-        .map_err(|reason| reason.to_string())?;
-    let values = frame.column(column).map_err(|reason| reason.to_string())?;
-    let values = values.cast(&DataType::Float64).map_err(|reason| reason.to_string())?;
-    let values = values.f64().map_err(|reason| reason.to_string())?;
+    let values = damage::read(|| {
+        let frame =
+            ParquetReader::new(file).with_columns(Some(vec![column.to_owned()])).finish()?;
+        let values = frame.column(column)?.cast(&DataType::Float64)?;
+        Ok::<Vec<Option<f64>>, PolarsError>(values.f64()?.iter().collect())
+    })?;
     values
-        .iter()
+        .into_iter()
         .enumerate()
         .map(|(k, value)| value.ok_or_else(|| format!("row {} of column {column} is null", k + 1)))
         .collect()

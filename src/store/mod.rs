@@ -4,10 +4,11 @@
 
 mod atomic;
 mod column_file;
+mod damage;
 mod outcomes_file;
 mod parquet;
 
-pub use atomic::{AtomicFile, write_text};
+pub use atomic::{AtomicFile, refuse_obstacle, write_text};
 pub use column_file::read_number_column;
 pub use outcomes_file::{OutcomesReader, OutcomesWriter, Parentage};
 pub use parquet::{Field, write_table};

@@ -1,5 +1,6 @@
 //! `outcomes.parquet`: one row a sample, with the names of its parents in the footer.
 
+use super::damage;
 use super::parquet::{TableWriter, frame};
 use crate::descent::{Fault, OutcomeQuantity};
 use crate::error::{Error, Result};
@@ -146,8 +147,8 @@ impl OutcomesReader {
     /// If it is not there, not Parquet, or not written by this program.
     pub fn open(path: &Path) -> Result<Self> {
         let file = File::open(path).map_err(|reason| unusable(path, reason))?;
-        let mut reader = ParquetReader::new(file);
-        let metadata = reader.get_metadata().map_err(|reason| unusable(path, reason))?;
+        let metadata = damage::read(|| ParquetReader::new(file).get_metadata().cloned())
+            .map_err(|reason| unusable(path, reason))?;
         let rows = metadata.num_rows as u64;
         let entries = metadata.key_value_metadata().as_ref().map_or(&[][..], |list| list);
         let parentage: BTreeMap<String, String> = entries
@@ -180,10 +181,9 @@ impl OutcomesReader {
     pub fn read(&self, study: &Study, first: u64, rows: usize) -> Result<OutcomeTable> {
         let fail = |reason: String| unusable(&self.path, reason);
         let file = File::open(&self.path).map_err(|reason| unusable(&self.path, reason))?;
-        let frame = ParquetReader::new(file)
-            .with_slice(Some((first as usize, rows)))
-            .finish()
-            .map_err(|reason| unusable(&self.path, reason))?;
+        let slice = Some((first as usize, rows));
+        let frame =
+            damage::read(|| ParquetReader::new(file).with_slice(slice).finish()).map_err(fail)?;
         if frame.height() != rows {
             return Err(fail(format!("it has no samples {first} to {}", first + rows as u64 - 1)));
         }

@@ -47,7 +47,7 @@ pub(super) fn tail_of_uniform(u: f64) -> (f64, bool) {
 
 over_lanes! {
     /// The straight-line part of [`truncated_from_uniform`].
-    fn truncated_from_uniform_lanes(u: &[f64], out: &mut [f64], cut: &Truncation) {
+    narrow fn truncated_from_uniform_lanes(u: &[f64], out: &mut [f64], cut: &Truncation) {
         for (out, &u) in out.iter_mut().zip(u) {
             let (tail, lower) = tail_of_uniform(u);
             *out = truncated_normal_lane(cut, tail, lower);

@@ -1,4 +1,5 @@
 //! Truth: analytic cases, published figures, independent tools.
 
+mod breach_probability;
 mod paper_statements;
 mod reference_descents;

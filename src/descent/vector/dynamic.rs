@@ -38,8 +38,8 @@ use super::constants::Constants;
 use super::observables::OBSERVABLES;
 use super::rosenbrock::System;
 use super::thermal;
-use crate::numerics::lanes::elementary::{exp, ln};
 use crate::numerics::lanes::Lanes;
+use crate::numerics::lanes::elementary::{exp, ln};
 
 /// Number of state variables: `l, U, z, T1, T2, T3, t`.
 pub const STATES: usize = 7;
@@ -200,8 +200,8 @@ impl<V: Lanes> System<V, STATES> for Dynamic<V> {
 
         let line_by_v = alpha.neg_mul_add(line_rate, one) * inverse_c;
         let sw = s * m.w;
-        let heat_line = k.inverse_fluid_capacity
-            * (sw * z.mul_add(m.pull_by_z, m.half_thinning * m.pull));
+        let heat_line =
+            k.inverse_fluid_capacity * (sw * z.mul_add(m.pull_by_z, m.half_thinning * m.pull));
         let heat_v = [
             heat_line.mul_add(
                 line_by_v,
@@ -249,12 +249,8 @@ impl<V: Lanes> System<V, STATES> for Dynamic<V> {
         let jsw = k.inertia * sw;
         let inverse_p = one / m.p;
         let kappa = (k.torque * inverse_p) / m.fluidity;
-        let mass_slope =
-            k.total_mass * (k.share_slope * (m.eta + m.eta - one));
-        let n_line = -((n * n).mul_add(
-            mass_slope,
-            (k.inertia * s) * (m.inverse_q * m.inverse_q),
-        ));
+        let mass_slope = k.total_mass * (k.share_slope * (m.eta + m.eta - one));
+        let n_line = -((n * n).mul_add(mass_slope, (k.inertia * s) * (m.inverse_q * m.inverse_q)));
         let spread = s * m.w.mul_add(lambda, specific);
         let a_line = sw.mul_add(sw, spread);
         let two_b_rate = (m.b + m.b) * (m.v * (m.inverse_tv * m.tv_rate));
@@ -269,10 +265,7 @@ impl<V: Lanes> System<V, STATES> for Dynamic<V> {
         let by_line = {
             let direct = k.share_slope.mul_add(m.lift, k.extraction);
             let drag = (m.drag_slope * m.eta).mul_add(-(k.share_slope * m.v), direct);
-            let spool = jsw.mul_add(
-                sw,
-                s * z.mul_add(m.pull_by_z, m.half_thinning * m.pull),
-            );
+            let spool = jsw.mul_add(sw, s * z.mul_add(m.pull_by_z, m.half_thinning * m.pull));
             n_line.neg_mul_add(m.force, n.mul_add(drag, m.inverse_q.mul_add(spool, -a_line)))
         };
         let by_centre = nd * m.eta;
@@ -281,10 +274,8 @@ impl<V: Lanes> System<V, STATES> for Dynamic<V> {
         // u_Tv = (1 + ε) u_1 − ε u_2 as a combination of r and u_v.
         let blend = |first: V, second: V| eps.mul_add(first - second, first);
         let heat_tv_v = blend(heat_by_v[0], heat_by_v[1]);
-        let pivot = by_heat.mul_add(
-            heat_tv_v,
-            by_centre.mul_add(centre[2], by_line.mul_add(line_by_v, by_v)),
-        );
+        let pivot = by_heat
+            .mul_add(heat_tv_v, by_centre.mul_add(centre[2], by_line.mul_add(line_by_v, by_v)));
         let inverse_pivot = one / pivot;
         let gvb = pace * (m.v * m.b);
         let weights = {
@@ -324,18 +315,15 @@ impl<V: Lanes> System<V, STATES> for Dynamic<V> {
         let u_v = w[2].mul_add(r[2], w[1].mul_add(r[1], w[0] * r[0]))
             + w[5].mul_add(r[5], w[4].mul_add(r[4], w[3] * r[3]));
         let u_l = f.line_by_v.mul_add(u_v, f.h_gamma * r[0]);
-        let u_centre = f.centre[2]
-            .mul_add(u_v, f.centre[1].mul_add(r[0], f.centre[0] * r[1]));
+        let u_centre = f.centre[2].mul_add(u_v, f.centre[1].mul_add(r[0], f.centre[0] * r[1]));
         let heat = |i: usize| {
-            let own = f.heat[i][2]
-                .mul_add(r[5], f.heat[i][1].mul_add(r[4], f.heat[i][0] * r[3]));
+            let own = f.heat[i][2].mul_add(r[5], f.heat[i][1].mul_add(r[4], f.heat[i][0] * r[3]));
             f.heat_by_v[i].mul_add(u_v, f.heat_by_line[i].mul_add(r[0], own))
         };
         let (u_1, u_2, u_3) = (heat(0), heat(1), heat(2));
-        let u_z = f.z_by_rotor.mul_add(
-            u_2,
-            f.z_by_fluid.mul_add(u_1, f.z_by_line.mul_add(u_l, f.z_by_v * u_v)),
-        );
+        let u_z = f
+            .z_by_rotor
+            .mul_add(u_2, f.z_by_fluid.mul_add(u_1, f.z_by_line.mul_add(u_l, f.z_by_v * u_v)));
         let u_t = f.time_by_v.mul_add(u_v, f.h_gamma * r[6]);
         [u_l, u_centre, u_z, u_1, u_2, u_3, u_t]
     }
@@ -398,19 +386,14 @@ impl<V: Lanes> Dynamic<V> {
         let v_rate = m.p * (s * m.w).neg_mul_add(m.w, w_rate);
         let specific = m.force * m.inverse_q;
         let spool = k.spool_pull * m.w;
-        let pull_rate =
-            m.pull_by_z.mul_add(z_rate, (m.half_thinning * m.pull) * (s * m.w));
+        let pull_rate = m.pull_by_z.mul_add(z_rate, (m.half_thinning * m.pull) * (s * m.w));
         let brake_rate = (spool + spool).mul_add(w_rate, pull_rate);
-        let balloon_rate = m.eta.mul_add(
-            v_rate,
-            (k.share_slope * m.v).neg_mul_add(m.v, m.rates[1] * pace),
-        );
+        let balloon_rate =
+            m.eta.mul_add(v_rate, (k.share_slope * m.v).neg_mul_add(m.v, m.rates[1] * pace));
         let lift_rate = -(m.drag_slope * balloon_rate);
         let share_rate = -(k.share_slope * m.v);
-        let force_rate = share_rate.mul_add(
-            m.lift,
-            m.eta.mul_add(lift_rate, -(k.extraction.mul_add(m.v, brake_rate))),
-        );
+        let force_rate = share_rate
+            .mul_add(m.lift, m.eta.mul_add(lift_rate, -(k.extraction.mul_add(m.v, brake_rate))));
         let one = V::splat(1.0);
         let reduced = k.total_mass * m.eta.neg_mul_add(m.eta, m.eta);
         let reduced_rate = k.total_mass * (share_rate * (one - (m.eta + m.eta)));

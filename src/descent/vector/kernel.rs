@@ -136,7 +136,7 @@ pub fn run<V: Lanes, M: Model<V, N>, const N: usize>(
                 }
             }
             let any = any_cross(model.constants());
-    model.set_any_cross(any);
+            model.set_any_cross(any);
             // The refilled lanes' right-hand sides are evaluated with all the others' again.
             continue;
         }
@@ -159,9 +159,7 @@ pub fn run<V: Lanes, M: Model<V, N>, const N: usize>(
         let end_velocity = M::velocity(&step.moment);
 
         let over_line = in_length.not().and(length.le(step.state[0]));
-        let over_time = in_length
-            .and(leg.lt(V::splat(2.5)))
-            .and(limit.le(step.state[N - 1]));
+        let over_time = in_length.and(leg.lt(V::splat(2.5))).and(limit.le(step.state[N - 1]));
         let accepted = good.and(over_line.not()).and(over_time.not());
         let pace = model.clock().pace(velocity);
         let start_slopes = model.observable_rates(&moment, step.slopes[0] * pace / tried);
@@ -176,7 +174,8 @@ pub fn run<V: Lanes, M: Model<V, N>, const N: usize>(
             y[n] = V::select(accepted, step.state[n], y[n]);
         }
         let arrived = accepted.and(last);
-        finished = V::select(arrived, V::select(in_length, V::splat(DEPLOYED), V::splat(LATE)), finished);
+        finished =
+            V::select(arrived, V::select(in_length, V::splat(DEPLOYED), V::splat(LATE)), finished);
 
         // Not a number in the error: `growth` is then 0.2, as `max` and `min` give their second operand.
         h = tried * V::select(good, growth, growth.min(V::splat(0.8)));
@@ -190,11 +189,7 @@ pub fn run<V: Lanes, M: Model<V, N>, const N: usize>(
         h = V::select(into_time, limit - y[N - 1], h);
         leg = V::select(settled, V::splat(PAYING_OUT), leg);
         let late = V::splat(1.5).lt(leg);
-        leg = V::select(
-            into_line,
-            V::select(late, V::splat(LANDING), V::splat(PAYING_OUT)),
-            leg,
-        );
+        leg = V::select(into_line, V::select(late, V::splat(LANDING), V::splat(PAYING_OUT)), leg);
         leg = V::select(into_time, V::splat(RUNNING_LATE), leg);
 
         let rejected = u64::from((accepted.not().bits() & live).count_ones());

@@ -2,7 +2,8 @@
 //!
 //! # The error norm
 //! A step's embedded error is weighted by what it does to the outcomes, all as relative changes:
-//! - time against the total time as estimated from here, line against its length;
+//! - time against the total time as estimated from here (twice that in the quasi-steady model, where it
+//!   decides alone), line against its length;
 //! - a kelvin in the rotors changes the velocity by `b = B/Tv²` to the end, and the time with it: weight
 //!   0.8 b. A kelvin in the fluid is forgotten within C1/(K12 + K13), some six seconds, but for the heat that
 //!   it leaves in the rotors: weight 0.15 b, rising to 1.15 b at the end of the line, where it meets the final
@@ -202,7 +203,7 @@ impl<V: Lanes> Model<V, { quasi_steady::STATES }> for QuasiSteady<V> {
         let total = step.state[4] + remaining / m.v;
         let late = nearness(step.state[0] / k.length);
         let b = m.velocity_per_kelvin();
-        let time = e[4].abs() / total;
+        let time = V::splat(2.0) * e[4].abs() / total;
         let line = e[0].abs() / k.length;
         let heat = b * heat(late, e[1], e[2]);
         (time + line) + heat

@@ -13,8 +13,8 @@ use super::constants::Constants;
 use super::observables::OBSERVABLES;
 use super::rosenbrock::System;
 use super::thermal;
-use crate::numerics::lanes::elementary::{exp, ln};
 use crate::numerics::lanes::Lanes;
+use crate::numerics::lanes::elementary::{exp, ln};
 
 /// Number of state variables: `l, T1, T2, T3, t`.
 pub const STATES: usize = 5;
@@ -143,10 +143,8 @@ impl<V: Lanes> System<V, STATES> for QuasiSteady<V> {
         // (1 − v_l d − v b h) u_v = v_l hγ r_l + v b (Σ τ_j r_j + τ_l r_l)
         let vb = m.v * m.b;
         let blend = |first: V, second: V| eps.mul_add(first - second, first);
-        let pivot = vb.neg_mul_add(
-            blend(heat_by_v[0], heat_by_v[1]),
-            m.v_line.neg_mul_add(line_by_v, one),
-        );
+        let pivot =
+            vb.neg_mul_add(blend(heat_by_v[0], heat_by_v[1]), m.v_line.neg_mul_add(line_by_v, one));
         let inverse_pivot = one / pivot;
         let scaled_vb = vb * inverse_pivot;
         let weight = |j: usize| scaled_vb * blend(heat[0][j], heat[1][j]);
@@ -176,8 +174,7 @@ impl<V: Lanes> System<V, STATES> for QuasiSteady<V> {
         let u_v = w[1].mul_add(r[1], w[0] * r[0]) + w[3].mul_add(r[3], w[2] * r[2]);
         let u_l = f.line_by_v.mul_add(u_v, f.h_gamma * r[0]);
         let heat = |i: usize| {
-            let own = f.heat[i][2]
-                .mul_add(r[3], f.heat[i][1].mul_add(r[2], f.heat[i][0] * r[1]));
+            let own = f.heat[i][2].mul_add(r[3], f.heat[i][1].mul_add(r[2], f.heat[i][0] * r[1]));
             f.heat_by_v[i].mul_add(u_v, f.heat_by_line[i].mul_add(r[0], own))
         };
         let u_t = f.time_by_v.mul_add(u_v, f.h_gamma * r[4]);

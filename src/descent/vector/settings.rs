@@ -10,7 +10,7 @@ pub struct Settings {
     ///
     /// Measured against runs at 1e-11: it holds for the worst of 10 000 members of the default study, and
     /// ten times it for a stress set (viscosity × 0.2 … × 5, 0 … 100 °F, Cross thinning, runaways, descents
-    /// that do not deploy). The other peaks keep to ten and thirty times it.
+    /// that do not deploy). The other outcomes keep to thirty and to a hundred times it.
     pub tolerance: f64,
 }
 
@@ -30,7 +30,7 @@ impl Settings {
     pub(super) fn local_tolerance(&self, model: Model) -> f64 {
         let factor = match model {
             Model::Dynamic => 2.4,
-            Model::QuasiSteady => 1.5,
+            Model::QuasiSteady => 1.2,
         };
         factor * self.tolerance.clamp(1e-12, 1e-3)
     }

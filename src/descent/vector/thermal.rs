@@ -61,7 +61,6 @@ pub fn cofactors<V: Lanes>(k: &Constants<V>, c: V, feedback: V) -> Cofactors<V> 
         [minor12, b13.neg_mul_add(b31, a11 * a33), a11.mul_add(b23, b13 * b21)],
         [minor13, a11.mul_add(b32, b12 * b31), b12.neg_mul_add(b21, a11 * a22)],
     ];
-    let determinant =
-        b13.neg_mul_add(minor13, b12.neg_mul_add(minor12, a11 * minor11));
+    let determinant = b13.neg_mul_add(minor13, b12.neg_mul_add(minor12, a11 * minor11));
     Cofactors { adjugate, determinant }
 }

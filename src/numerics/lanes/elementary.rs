@@ -40,7 +40,12 @@ pub fn exp<V: Lanes>(x: V) -> V {
     let middle = r2.mul_add(pair(6), pair(4));
     let high = r2.mul_add(V::splat(EXP[10]), pair(8));
     let q = r4.mul_add(r4.mul_add(high, middle), low);
-    (r2.mul_add(q, r) + V::splat(1.0)) * shifted.power_of_two()
+    // 1 + r is split into its rounded value and the rest, so that only the last addition rounds at the
+    // result's own size.
+    let one = V::splat(1.0);
+    let high = one + r;
+    let low = r - (high - one);
+    (high + r2.mul_add(q, low)) * shifted.power_of_two()
 }
 
 /// Natural logarithm of a positive normal number (after fdlibm's scheme: with `f = z − 1` and

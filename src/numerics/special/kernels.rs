@@ -7,28 +7,20 @@ use crate::numerics::elementary;
 use std::f64::consts::LOG2_E;
 
 /// Compiles a loop for the portable, the AVX2 and the AVX-512 instruction sets and picks one at run time.
+///
+/// With `narrow` the AVX-512 one is left out: choices between two long polynomials become masked
+/// moves there, which wait for the round before (measured: 9.5 ns a quantile against 6.2).
 macro_rules! over_lanes {
-    ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident : $type:ty),* $(,)?) $body:block) => {
+    ($(#[$meta:meta])* narrow $vis:vis fn $name:ident($($arg:ident : $type:ty),* $(,)?) $body:block) => {
         $(#[$meta])*
         $vis fn $name($($arg: $type),*) {
             #[inline(always)]
             fn portable($($arg: $type),*) $body
             #[cfg(target_arch = "x86_64")]
             {
-                #[target_feature(enable = "avx512f,avx512dq,avx512vl")]
-                fn avx512($($arg: $type),*) {
-                    portable($($arg),*)
-                }
                 #[target_feature(enable = "avx2")]
                 fn avx2($($arg: $type),*) {
                     portable($($arg),*)
-                }
-                if std::arch::is_x86_feature_detected!("avx512f")
-                    && std::arch::is_x86_feature_detected!("avx512dq")
-                    && std::arch::is_x86_feature_detected!("avx512vl")
-                {
-                    // SAFETY: the three features were just detected.
-                    return unsafe { avx512($($arg),*) };
                 }
                 if std::arch::is_x86_feature_detected!("avx2") {
                     // SAFETY: the feature was just detected.
@@ -36,6 +28,28 @@ macro_rules! over_lanes {
                 }
             }
             portable($($arg),*)
+        }
+    };
+    ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident : $type:ty),* $(,)?) $body:block) => {
+        $(#[$meta])*
+        $vis fn $name($($arg: $type),*) {
+            #[cfg(target_arch = "x86_64")]
+            {
+                #[target_feature(enable = "avx512f,avx512dq,avx512vl")]
+                fn avx512($($arg: $type),*) $body
+                if std::arch::is_x86_feature_detected!("avx512f")
+                    && std::arch::is_x86_feature_detected!("avx512dq")
+                    && std::arch::is_x86_feature_detected!("avx512vl")
+                {
+                    // SAFETY: the three features were just detected.
+                    return unsafe { avx512($($arg),*) };
+                }
+            }
+            over_lanes! {
+                /// The same without AVX-512.
+                narrow fn narrower($($arg: $type),*) $body
+            }
+            narrower($($arg),*)
         }
     };
 }
@@ -78,25 +92,30 @@ const LOGARITHM: [f64; 10] = [
 /// The polynomial with `coefficients` from the highest power down.
 #[inline(always)]
 pub(crate) fn descending<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
-    let mut sum = coefficients[0];
-    let mut k = 1;
+    let mut turned = *coefficients;
+    let mut k = 0;
     while k < N {
-        sum = sum * x + coefficients[k];
+        turned[k] = coefficients[N - 1 - k];
         k += 1;
     }
-    sum
+    ascending(&turned, x)
 }
 
 /// The polynomial with `coefficients` from the constant up.
+///
+/// Four interleaved Horner schemes in x⁴: the vector units wait for a single scheme's every step.
 #[inline(always)]
 pub(crate) fn ascending<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
-    let mut sum = coefficients[N - 1];
-    let mut k = N - 1;
+    let square = x * x;
+    let fourth = square * square;
+    let mut sums = [0.0; 4];
+    let mut k = N;
     while k > 0 {
         k -= 1;
-        sum = sum * x + coefficients[k];
+        let sum = &mut sums[k % 4];
+        *sum = if k + 4 >= N { coefficients[k] } else { *sum * fourth + coefficients[k] };
     }
-    sum
+    (sums[0] + x * sums[1]) + square * (sums[2] + x * sums[3])
 }
 
 /// Largest magnitude of `x` that [`exponential`] takes.

@@ -108,7 +108,7 @@ const MILLS_DENOMINATOR: [f64; 11] = [
     3.4175934712166467e-06,
 ];
 
-/// φ(t) e^(−t²/2)-scaled tail: P(Z > t) for 0 ≤ t ≤ 37.5.
+/// P(Z > t) for 0 ≤ t ≤ 37.5.
 #[inline(always)]
 pub(crate) fn tail_lane(t: f64) -> f64 {
     // t² in two parts: the head's square is exact.
@@ -233,7 +233,7 @@ pub fn quantile_upper(q: f64) -> f64 {
 
 over_lanes! {
     /// The straight-line part of [`quantile_column`].
-    fn quantile_lanes(p: &[f64], out: &mut [f64]) {
+    narrow fn quantile_lanes(p: &[f64], out: &mut [f64]) {
         for (out, &p) in out.iter_mut().zip(p) {
             let lower = p <= 0.5;
             let z = magnitude_lane(if lower { p } else { 1.0 - p });

@@ -1,0 +1,295 @@
+//! Cross-entropy importance sampling: a density that learns where the breaches are, and then an
+//! independent sample from it.
+//!
+//! The learning follows smooth versions Φ(−g/σ) of the breach (improved cross-entropy), σ falling as fast
+//! as the coefficient of variation of Φ(−g/σ') / Φ(−g/σ) over a level's sample allows. The final sample is drawn afresh, with a
+//! defensive share of the nominal density, so its interval owes nothing to the learning. A union learns
+//! limit by limit.
+//!
+//! Source: Papaioannou, Geyer and Straub, Reliability Engineering and System Safety 191 (2019) 106564.
+
+use super::draws::{open_uniform, standard_normal};
+use super::estimate::{Estimate, Method};
+use super::event::{BATCH, Evaluator, Event, FaultReading};
+use super::importance::combined;
+use super::limit_state::LimitState;
+use super::mises_fisher_nakagami::Mixture;
+use super::vectors::dot;
+use super::weighted::{WeightChecks, WeightedBreaches};
+use crate::error::{Error, Result};
+use crate::numerics::columns::Columns;
+use crate::numerics::elementary::{exp, ln};
+use crate::numerics::special::normal;
+use crate::streams::{Purpose, keyed};
+use std::f64::consts::PI;
+
+/// How cross-entropy importance sampling is done.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CrossEntropyOptions {
+    /// Points of one level of the learning.
+    pub samples_per_level: usize,
+    /// Most levels.
+    pub levels: usize,
+    /// Components of the mixture that each part learns.
+    pub components: usize,
+    /// Coefficient of variation of the weights that a level aims at.
+    pub variation: f64,
+    /// Points of the final, independent sample.
+    pub final_samples: u64,
+    /// Share of them drawn from the nominal density.
+    pub defensive_share: f64,
+    /// Confidence of the interval.
+    pub confidence: f64,
+    /// The self-checks.
+    pub checks: WeightChecks,
+    /// Seed.
+    pub seed: u64,
+}
+
+impl Default for CrossEntropyOptions {
+    fn default() -> Self {
+        CrossEntropyOptions {
+            samples_per_level: 2000,
+            levels: 30,
+            components: 4,
+            variation: 1.5,
+            final_samples: 20_000,
+            defensive_share: 0.1,
+            confidence: 0.95,
+            checks: WeightChecks::default(),
+            seed: 0,
+        }
+    }
+}
+
+/// Cross-entropy importance sampling of an event, without gradients.
+///
+/// Faults are read as no breach while learning; in the final sample they are counted as weighted
+/// breaches in `probability_with_faults` and in the upper end of the interval.
+///
+/// # Errors
+/// If an option is out of range, the event does not fit, or the limit state fails.
+pub fn cross_entropy(
+    state: &dyn LimitState,
+    event: Event,
+    options: &CrossEntropyOptions,
+) -> Result<Estimate> {
+    let share = options.defensive_share;
+    if options.samples_per_level < 100 || options.final_samples < 2 || options.components == 0 {
+        return Err(Error::argument("cross-entropy needs 100 points a level and two at the end"));
+    }
+    if !(0.0 < share && share < 1.0 && options.variation > 0.0) {
+        return Err(Error::argument(
+            "cross-entropy needs a defensive share between 0 and 1 and a positive variation",
+        ));
+    }
+    let parts: Vec<Event> = match event.is_union() {
+        true => event.members(state.limits())?.into_iter().map(Event::Limit).collect(),
+        false => vec![event],
+    };
+    let mut learnt: Vec<Mixture> = Vec::new();
+    let (mut evaluations, mut faults, mut diagnostics) = (0, 0, Vec::new());
+    for (part, &limit) in parts.iter().enumerate() {
+        let mut evaluator = Evaluator::new(state, limit, FaultReading::Safe)?;
+        let (mixture, levels) = learn(&mut evaluator, part as u64, options)?;
+        evaluations += evaluator.evaluations;
+        faults += evaluator.faults;
+        match mixture {
+            Some(mixture) => {
+                diagnostics.push(format!("learnt {limit:?} in {levels} levels"));
+                learnt.push(mixture);
+            }
+            None => diagnostics.push(format!("{limit:?} was not reached in {levels} levels")),
+        }
+    }
+    if learnt.is_empty() {
+        let why = "the learning never reached a breach";
+        let mut estimate = Estimate::without_number(Method::CrossEntropy, event, why);
+        estimate.evaluations = evaluations;
+        estimate.faults = faults;
+        estimate.diagnostics.extend(diagnostics);
+        return Ok(estimate);
+    }
+    let mut estimate = sample(state, event, &Mixture::side_by_side(&learnt), options)?;
+    estimate.evaluations += evaluations;
+    estimate.faults += faults;
+    estimate.diagnostics.extend(diagnostics);
+    Ok(estimate)
+}
+
+/// Directions need two dimensions; a problem of one gets an idle second.
+fn working_dimension(dimension: usize) -> usize {
+    dimension.max(2)
+}
+
+fn ln_nominal(point: &[f64]) -> f64 {
+    -0.5 * dot(point, point) - 0.5 * point.len() as f64 * ln(2.0 * PI)
+}
+
+fn evaluate(evaluator: &mut Evaluator, points: &[Vec<f64>], margins: &mut Vec<f64>) -> Result<()> {
+    let mut batch = Columns::new(points.len(), evaluator.dimension());
+    for j in 0..evaluator.dimension() {
+        let column = batch.column_mut(j);
+        points.iter().zip(column).for_each(|(point, x)| *x = point[j]);
+    }
+    evaluator.evaluate(&batch, margins)
+}
+
+/// The mixture learnt for one part, if its breaches were reached, and the levels used.
+fn learn(
+    evaluator: &mut Evaluator,
+    part: u64,
+    options: &CrossEntropyOptions,
+) -> Result<(Option<Mixture>, usize)> {
+    let n = working_dimension(evaluator.dimension());
+    let mut stream = keyed(options.seed, Purpose::CrossEntropy);
+    let mut mixture: Option<Mixture> = None;
+    let mut sigma = f64::INFINITY;
+    let mut margins = Vec::new();
+    for level in 0..options.levels {
+        let first = ((part * 1000 + level as u64) << 32) + (1 << 31);
+        let points: Vec<Vec<f64>> = (0..options.samples_per_level as u64)
+            .map(|k| {
+                stream.set_stream(first + k);
+                stream.set_word_pos(0);
+                match &mixture {
+                    Some(mixture) => mixture.draw(&mut stream),
+                    None => (0..n).map(|_| standard_normal(&mut stream)).collect(),
+                }
+            })
+            .collect();
+        evaluate(evaluator, &points, &mut margins)?;
+        let ratios: Vec<f64> = points
+            .iter()
+            .map(|point| match &mixture {
+                Some(mixture) => exp(ln_nominal(point) - mixture.ln_density(point)),
+                None => 1.0,
+            })
+            .collect();
+        // How much of the sample, which follows the last σ, the next breach would keep.
+        let last: Vec<f64> = margins.iter().map(|&g| smoothed(g, sigma)).collect();
+        let kept = |of: &dyn Fn(f64) -> f64| {
+            let shares = margins.iter().zip(&last).map(|(&g, &last)| kept_share(of(g), last));
+            variation(&shares.collect::<Vec<f64>>())
+        };
+        let sharp = |g: f64| f64::from(u8::from(g < 0.0));
+        let done = kept(&sharp) <= options.variation;
+        if !done {
+            sigma = next_sigma(&kept, &margins, sigma, options.variation);
+        }
+        let wanted = |g: f64| if done { sharp(g) } else { smoothed(g, sigma) };
+        let weights = ratios.iter().zip(&margins).map(|(ratio, &g)| ratio * wanted(g));
+        let weights = truncated(weights.collect());
+        let Some(fitted) = Mixture::fit(&points, &weights, options.components) else {
+            return Ok((None, level + 1));
+        };
+        mixture = Some(fitted);
+        if done {
+            return Ok((mixture, level + 1));
+        }
+    }
+    Ok((None, options.levels))
+}
+
+/// The smoothed breach, Φ(−g/σ).
+fn smoothed(margin: f64, sigma: f64) -> f64 {
+    if sigma.is_finite() { normal::cdf(-margin / sigma) } else { f64::from(u8::from(margin.is_finite())) }
+}
+
+fn kept_share(next: f64, last: f64) -> f64 {
+    if last > 0.0 { next / last } else { 0.0 }
+}
+
+/// Weights cut at √N times their mean, so that one point cannot be a whole component's fit.
+///
+/// Source: Ionides, J. Comput. Graph. Stat. 17 (2008) 295.
+fn truncated(weights: Vec<f64>) -> Vec<f64> {
+    let n = weights.len() as f64;
+    let most = weights.iter().sum::<f64>() / n * n.sqrt();
+    weights.into_iter().map(|weight| weight.min(most)).collect()
+}
+
+/// Coefficient of variation; infinite without a positive weight.
+fn variation(weights: &[f64]) -> f64 {
+    let n = weights.len() as f64;
+    let sum: f64 = weights.iter().sum();
+    let squares: f64 = weights.iter().map(|w| w * w).sum();
+    if sum > 0.0 { (n * squares / (sum * sum) - 1.0).max(0.0).sqrt() } else { f64::INFINITY }
+}
+
+/// The least σ below the last one at which the shares kept do not vary more than the target, by
+/// bisection of its logarithm; the variation falls as σ grows.
+fn next_sigma(
+    kept: &dyn Fn(&dyn Fn(f64) -> f64) -> f64,
+    margins: &[f64],
+    last: f64,
+    target: f64,
+) -> f64 {
+    let mut high = last;
+    if last.is_infinite() {
+        let finite: Vec<f64> = margins.iter().copied().filter(|g| g.is_finite()).collect();
+        let size = finite.iter().map(|g| g.abs()).sum::<f64>() / (finite.len() as f64).max(1.0);
+        high = 10.0 * size.max(1e-300);
+    }
+    let mut low = 1e-6 * high;
+    for _ in 0..40 {
+        let middle = (low * high).sqrt();
+        if kept(&|g| smoothed(g, middle)) > target { low = middle } else { high = middle }
+    }
+    high
+}
+
+/// The independent final sample.
+fn sample(
+    state: &dyn LimitState,
+    event: Event,
+    mixture: &Mixture,
+    options: &CrossEntropyOptions,
+) -> Result<Estimate> {
+    let n = working_dimension(state.dimension());
+    let mut evaluator = Evaluator::new(state, event, FaultReading::Kept)?;
+    let mut stream = keyed(options.seed, Purpose::CrossEntropy);
+    let (mut safe, mut breach) = (WeightedBreaches::default(), WeightedBreaches::default());
+    let mut margins = Vec::new();
+    let mut first = 0;
+    while first < options.final_samples {
+        let count = (options.final_samples - first).min(BATCH as u64);
+        let points: Vec<Vec<f64>> = (first..first + count)
+            .map(|k| {
+                stream.set_stream(k);
+                stream.set_word_pos(0);
+                if open_uniform(&mut stream) < options.defensive_share {
+                    (0..n).map(|_| standard_normal(&mut stream)).collect()
+                } else {
+                    mixture.draw(&mut stream)
+                }
+            })
+            .collect();
+        evaluate(&mut evaluator, &points, &mut margins)?;
+        for (point, &margin) in points.iter().zip(&margins) {
+            if margin < 0.0 || margin.is_nan() {
+                let learnt = exp(mixture.ln_density(point) - ln_nominal(point));
+                let share = options.defensive_share;
+                let weight = (share + (1.0 - share) * learnt).recip();
+                breach.weights.push(weight);
+                if margin < 0.0 {
+                    safe.weights.push(weight);
+                }
+            }
+        }
+        first += count;
+    }
+    safe.samples = options.final_samples;
+    breach.samples = options.final_samples;
+    let mut estimate = combined(
+        Method::CrossEntropy,
+        event,
+        &safe,
+        &breach,
+        options.confidence,
+        &options.checks,
+    );
+    estimate.evaluations = evaluator.evaluations;
+    estimate.faults = evaluator.faults;
+    Ok(estimate)
+}
