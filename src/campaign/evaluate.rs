@@ -51,6 +51,13 @@ impl<'a> Ensemble<'a> {
         self.targets.len()
     }
 
+    /// The draw (SI values of the inputs) at a standard-normal point.
+    pub fn draw(&self, point: &[f64]) -> Vec<f64> {
+        let mut inputs = Columns::new(1, self.dimension());
+        self.joint.from_standard_normal(&Columns::from_rows(&[point]), &mut inputs);
+        inputs.row(0)
+    }
+
     /// The design of one draw (SI values of the inputs, in their order).
     pub fn design_of(&self, draw: &[f64]) -> Design {
         let mut design = self.design.clone();

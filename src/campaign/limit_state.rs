@@ -19,6 +19,11 @@ impl<'a> DescentLimitState<'a> {
     pub fn new(study: &'a Study, progress: &'a Progress) -> Self {
         DescentLimitState { ensemble: Ensemble::new(study), limits: &study.limits, progress }
     }
+
+    /// The inputs (SI) at a standard-normal point.
+    pub fn draw(&self, point: &[f64]) -> Vec<f64> {
+        self.ensemble.draw(point)
+    }
 }
 
 impl LimitState for DescentLimitState<'_> {

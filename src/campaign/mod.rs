@@ -7,6 +7,7 @@
 mod evaluate;
 mod limit_state;
 mod pick_freeze;
+mod rare;
 mod record;
 mod verification;
 
@@ -21,6 +22,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 pub use evaluate::{Ensemble, nominal};
 pub use limit_state::DescentLimitState;
 pub use pick_freeze::{CORRELATED, PickFreezeOutcomes, factors, run_pick_freeze};
+pub use rare::{FEW_BREACHES, RareEvent, rare_events};
 pub use record::{FaultedSample, OutcomeSummary, Record};
 pub use verification::{NEAR, NearLimit, Verification, verify};
 

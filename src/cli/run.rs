@@ -82,9 +82,14 @@ impl Run<'_> {
                 Err(reason) => Err(reason.to_string()),
             }
         };
+        let rare = campaign::rare_events(self.study, &record, &progress)?;
+        if progress.stopping() {
+            return Ok(self.interrupted(samples));
+        }
         let findings = findings::gather(&Evidence {
             study: self.study,
             record: &record,
+            rare,
             nominal: campaign::nominal(self.study),
             verification: campaign::verify(self.study, &record)?,
             pick_freeze,

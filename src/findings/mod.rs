@@ -7,8 +7,9 @@ mod inputs;
 mod margins;
 mod numerical;
 mod probabilities;
+mod rare;
 
-use crate::campaign::{self, PickFreezeOutcomes, Record, Verification};
+use crate::campaign::{self, PickFreezeOutcomes, RareEvent, Record, Verification};
 use crate::descent::{Fault, Outcome, OutcomeQuantity};
 use crate::error::Result;
 use crate::study::Study;
@@ -21,6 +22,7 @@ pub use inputs::InputFinding;
 pub use margins::{MarginFinding, MarginQuantile};
 pub use numerical::{NumericalFinding, NumericalLimit};
 pub use probabilities::{EventKind, ProbabilityFinding};
+pub use rare::{DesignPointFinding, DesignPointInput, RareFinding};
 
 /// Confidence of the two-sided intervals.
 pub const CONFIDENCE: f64 = 0.95;
@@ -36,6 +38,8 @@ pub struct Findings {
     pub verdict: VerdictFinding,
     /// Each limit, any limit, each pair.
     pub probabilities: Vec<ProbabilityFinding>,
+    /// Events too rare for the samples, by several methods.
+    pub rare: Vec<RareFinding>,
     /// What margin is left, by limit.
     pub margins: Vec<MarginFinding>,
     /// The spread of every outcome.
@@ -140,6 +144,8 @@ pub struct Evidence<'a> {
     pub study: &'a Study,
     /// Its samples.
     pub record: &'a Record,
+    /// The events that the samples saw too rarely.
+    pub rare: Vec<RareEvent>,
     /// Its nominal descent.
     pub nominal: std::result::Result<Outcome, Fault>,
     /// Samples of it computed again by the plain integrator.
@@ -162,6 +168,7 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
         title: study.title.clone(),
         verdict: demonstration::verdict(study, record)?,
         probabilities: probabilities::probabilities(study, record)?,
+        rare: rare::rare(study, &evidence.rare),
         margins: margins::margins(study, record)?,
         outcomes: OutcomeQuantity::ALL.map(|quantity| outcome(record, quantity)).to_vec(),
         nominal: nominal(study, &evidence.nominal),

@@ -209,12 +209,18 @@ fn truncated(weights: Vec<f64>) -> Vec<f64> {
     weights.into_iter().map(|weight| weight.min(most)).collect()
 }
 
-/// Coefficient of variation; infinite without a positive weight.
+/// Coefficient of variation; infinite without a positive weight. Scaled by the largest weight: squares of
+/// far tails underflow.
 fn variation(weights: &[f64]) -> f64 {
     let n = weights.len() as f64;
-    let sum: f64 = weights.iter().sum();
-    let squares: f64 = weights.iter().map(|w| w * w).sum();
-    if sum > 0.0 { (n * squares / (sum * sum) - 1.0).max(0.0).sqrt() } else { f64::INFINITY }
+    let most = weights.iter().copied().fold(0.0, f64::max);
+    if most <= 0.0 {
+        return f64::INFINITY;
+    }
+    let scaled = weights.iter().map(|w| w / most);
+    let sum: f64 = scaled.clone().sum();
+    let squares: f64 = scaled.map(|w| w * w).sum();
+    (n * squares / (sum * sum) - 1.0).max(0.0).sqrt()
 }
 
 /// The least σ below the last one at which the shares kept do not vary more than the target, by

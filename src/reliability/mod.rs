@@ -13,16 +13,28 @@ pub mod quantiles;
 pub mod replicates;
 
 // Limit states in standard-normal space and the methods that walk them.
+pub mod adaptive;
+pub mod agreement;
+pub mod confidence_sequence;
+pub mod cross_entropy;
+pub mod crossings;
+pub mod crude;
 pub mod design_point;
+pub mod directional;
 pub mod draws;
 pub mod estimate;
 pub mod event;
 pub mod form;
 pub mod importance;
 pub mod limit_state;
+pub mod line;
 pub mod linearisation;
 pub mod log_replicates;
+pub mod mises_fisher_nakagami;
+pub mod multinormal;
 pub mod quasi_newton;
+pub mod sorm;
 pub mod subset;
+pub mod system;
 pub mod vectors;
 pub mod weighted;

@@ -6,7 +6,7 @@ use super::figures_of_speech::{
 use crate::descent::OutcomeQuantity;
 use crate::findings::{
     CONFIDENCE, Decision, DriverOutput, EventKind, FactorFinding, Findings, MarginFinding,
-    VerdictWord,
+    RareFinding, VerdictWord,
 };
 use crate::numerics::interval::Estimate;
 use crate::units::Quantity;
@@ -25,6 +25,7 @@ pub(super) struct View {
     pub probabilities: Vec<ProbabilityRow>,
     pub statements: Vec<String>,
     pub demonstration: Option<Demonstration>,
+    pub rare: Vec<Rare>,
     pub margins: Vec<Margin>,
     pub drivers: Drivers,
     pub nominal: String,
@@ -56,6 +57,23 @@ pub(super) struct ProbabilityRow {
 pub(super) struct Demonstration {
     pub risks: String,
     pub allowed: Vec<(String, String)>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct Rare {
+    pub title: String,
+    pub rows: Vec<RareRow>,
+    pub agreement: String,
+    pub story: Option<String>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct RareRow {
+    pub method: &'static str,
+    pub probability: String,
+    pub interval: String,
+    pub relative_error: String,
+    pub descents: String,
 }
 
 #[derive(Debug, Serialize)]
@@ -147,6 +165,7 @@ pub(super) fn view(findings: &Findings) -> View {
             .filter_map(|p| p.statement.as_ref().map(|text| format!("{}: {text}.", p.title)))
             .collect(),
         demonstration: demonstration(findings),
+        rare: findings.rare.iter().map(rare).collect(),
         margins: findings.margins.iter().map(margin).collect(),
         drivers: drivers(findings),
         nominal: nominal(findings),
@@ -260,6 +279,27 @@ fn demonstration(findings: &Findings) -> Option<Demonstration> {
         );
     }
     Some(Demonstration { risks, allowed })
+}
+
+fn rare(finding: &RareFinding) -> Rare {
+    Rare {
+        title: finding.title.clone(),
+        rows: finding
+            .estimates
+            .iter()
+            .map(|estimate| RareRow {
+                method: estimate.method.name(),
+                probability: estimate.probability.map_or("none".to_owned(), probability),
+                interval: probability_interval(&estimate.interval),
+                relative_error: estimate
+                    .relative_standard_error()
+                    .map_or("–".to_owned(), |error| format!("{:.0} %", 100.0 * error)),
+                descents: count(estimate.evaluations),
+            })
+            .collect(),
+        agreement: finding.agreement_statement.clone(),
+        story: finding.design_point.as_ref().map(|point| point.statement.clone()),
+    }
 }
 
 fn quantity_of(outcome: &str) -> Quantity {

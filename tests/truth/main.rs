@@ -3,3 +3,7 @@
 mod breach_probability;
 mod paper_statements;
 mod reference_descents;
+mod vector_descents;
+mod vector_elementary;
+mod vector_members;
+mod vector_rosenbrock;

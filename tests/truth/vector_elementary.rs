@@ -34,7 +34,7 @@ impl Double {
 }
 
 /// ln 2 to 106 bits (mpmath, 50 digits).
-const LN_2: Double = Double(0.693_147_180_559_945_3, 2.319_046_813_846_299_6e-17);
+const LN_2: Double = Double(std::f64::consts::LN_2, 2.319_046_813_846_299_6e-17);
 
 /// `eˣ/2^k` and `k`: Taylor's series after halving the reduced argument eight times.
 fn exp_double(x: f64) -> (Double, i32) {

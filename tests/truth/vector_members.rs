@@ -60,7 +60,9 @@ fn draw(stream: &mut Stream) -> Design {
 
 /// Members of the default study.
 pub fn default_study(count: usize) -> Vec<Coefficients<f64>> {
-    (0..count).map(|k| Coefficients::new(&draw(&mut stream(1993, Purpose::Test, k as u64)))).collect()
+    (0..count)
+        .map(|k| Coefficients::new(&draw(&mut stream(1993, Purpose::Test, k as u64))))
+        .collect()
 }
 
 /// The stress set: viscosity × 0.2 … × 5, 0 … 100 °F; every third thins with shear, every tenth is so thick

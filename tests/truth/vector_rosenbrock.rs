@@ -25,11 +25,11 @@ fn dot(a: &[f64; 6], b: &[f64; 6]) -> f64 {
 
 /// Inverse of a lower triangular matrix.
 fn inverse(l: &Square) -> Square {
-    let mut x = [[0.0; 6]; 6];
-    for j in 0..6 {
-        for i in j..6 {
+    let mut x: Square = [[0.0; 6]; 6];
+    for i in 0..6 {
+        for j in 0..=i {
             let unit = if i == j { 1.0 } else { 0.0 };
-            let sum: f64 = (j..i).map(|k| l[i][k] * x[k][j]).sum();
+            let sum: f64 = x[..i].iter().zip(&l[i]).map(|(row, factor)| factor * row[j]).sum();
             x[i][j] = (unit - sum) / l[i][i];
         }
     }
@@ -152,8 +152,9 @@ impl<const N: usize> System<f64, N> for Plain<N> {
         for i in 0..N {
             for j in i + 1..N {
                 let factor = a[j][i] / a[i][i];
-                for k in i..N {
-                    a[j][k] -= factor * a[i][k];
+                let pivot = a[i];
+                for (entry, above) in a[j].iter_mut().zip(pivot).skip(i) {
+                    *entry -= factor * above;
                 }
                 b[j] -= factor * b[i];
             }

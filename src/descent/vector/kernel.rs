@@ -69,7 +69,7 @@ pub fn run<V: Lanes, M: Model<V, N>, const N: usize>(
     let mut waiting = Some(first);
     let mut live = 0u32;
 
-    for lane in 0..V::WIDTH {
+    for (lane, place) in sample.iter_mut().enumerate().take(V::WIDTH) {
         // Lanes without a sample follow the first one's constants and are never read.
         let (constants, index) = match waiting.take() {
             Some((index, constants)) => (constants, index),
@@ -79,7 +79,7 @@ pub fn run<V: Lanes, M: Model<V, N>, const N: usize>(
             },
         };
         live |= 1 << lane;
-        sample[lane] = index;
+        *place = index;
         load::<V, M, N>(&mut model, lane, &constants, &mut y, &mut h, &mut leg);
     }
     // Idle lanes need some state: that of lane 0.
@@ -170,8 +170,8 @@ pub fn run<V: Lanes, M: Model<V, N>, const N: usize>(
             &start_slopes,
             step.slopes[1],
         );
-        for n in 0..N {
-            y[n] = V::select(accepted, step.state[n], y[n]);
+        for (old, &new) in y.iter_mut().zip(&step.state) {
+            *old = V::select(accepted, new, *old);
         }
         let arrived = accepted.and(last);
         finished =
@@ -234,8 +234,8 @@ fn load<V: Lanes, M: Model<V, N>, const N: usize>(
 ) {
     model.constants().set_lane(lane, constants);
     let start = M::start(constants);
-    for n in 0..N {
-        y[n].lanes_mut()[lane] = start.state[n];
+    for (variable, value) in y.iter_mut().zip(start.state) {
+        variable.lanes_mut()[lane] = value;
     }
     h.lanes_mut()[lane] = start.step;
     leg.lanes_mut()[lane] = if start.in_length { PAYING_OUT } else { STARTING };

@@ -4,6 +4,8 @@ mod clock;
 mod constants;
 mod dispatch;
 mod dynamic;
+#[cfg(test)]
+mod equations_test;
 mod kernel;
 mod model;
 mod observables;

@@ -42,8 +42,6 @@ pub struct Moment<V> {
     pub v: V,
     /// `w = v/p`.
     pub w: V,
-    /// Squared radius.
-    pub p: V,
     /// Weight hanging, N.
     pub load: V,
     b: V,
@@ -91,7 +89,6 @@ impl<V: Lanes> System<V, STATES> for QuasiSteady<V> {
             rates: [v * g, fluid_rate * g, rotor_rate * g, housing_rate * g, g],
             v,
             w,
-            p,
             load,
             b: -(k.minus_viscosity_temperature * (inverse_tv * inverse_tv)),
             tv_rate,

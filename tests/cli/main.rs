@@ -1,0 +1,12 @@
+//! The program from end to end: what is typed, printed, written, and the code it ends with.
+
+mod acceptance;
+mod determinism;
+mod disk;
+mod errors;
+mod inspection;
+mod interruption;
+mod program;
+mod readers;
+mod replaying;
+mod verdicts;

@@ -1,0 +1,132 @@
+//! Exit codes, and what goes to which stream.
+
+use super::program::{Answer, Place, program, reeldown};
+use std::io::Read;
+use std::process::Stdio;
+
+/// A study of the embedded card that cannot miss its limit: half an hour less a second.
+const LENIENT: &[&str] = &[
+    "--set",
+    "limits.time.max=1799 s",
+    "--set",
+    "limits.peak_fluid_temperature.max=2000 °F",
+    "--set",
+    "limits.final_velocity.max=50 ft/s",
+    "--set",
+    "sensitivity.base_samples=0",
+];
+const STRICT: &[&str] = &["--set", "sensitivity.base_samples=0"];
+
+fn run(place: &Place, arguments: &[&[&str]]) -> Answer {
+    reeldown(&[&["run", "--out", &place.at("run")], arguments.concat().as_slice()].concat())
+}
+
+#[test]
+fn property_exit_codes_tell_the_verdict() {
+    let place = Place::new("codes");
+    // 230 clean samples demonstrate 0.99 at 90 %: 0.99^230 < 0.1 < 0.99^229.
+    let met = run(&place, &[LENIENT, &["--samples", "230"]]).ended_with(0);
+    assert!(met.out.contains("Requirement met"), "{}", met.out);
+    let undecided = run(&place, &[LENIENT, &["--samples", "229"]]).ended_with(4);
+    assert!(undecided.out.contains("1 more clean samples would"), "{}", undecided.out);
+    let not_met = run(&place, &[STRICT, &["--samples", "200"]]).ended_with(3);
+    assert!(not_met.out.contains("Requirement not met"), "{}", not_met.out);
+    let usage = run(&place, &[&["--bogus"]]).ended_with(2);
+    assert!(usage.err.contains("--bogus"), "{}", usage.err);
+    reeldown(&["run", "--json", "--quiet"]).ended_with(2);
+    reeldown(&["replay"]).ended_with(2);
+    reeldown(&["descend", "--trace"]).ended_with(2);
+    reeldown(&["run", "--threads", "0"]).ended_with(2);
+    run(&place, &[&["--samples", "no"]]).ended_with(1);
+}
+
+#[test]
+fn property_without_a_requirement_done_is_done() {
+    let place = Place::new("no-requirement");
+    place.write("card.toml", include_str!("../../distributions/habe.toml"));
+    let study = place.write("plain.toml", "title = \"plain\"\ncard = \"card.toml\"\n");
+    let answer = run(&place, &[STRICT, &["--samples", "20", &study]]).ended_with(0);
+    assert!(answer.out.contains("no limit"), "{}", answer.out);
+}
+
+#[test]
+fn property_json_is_one_object_and_nothing_else() {
+    let place = Place::new("json");
+    let answer = run(&place, &[STRICT, &["--samples", "200", "--json"]]).ended_with(3);
+    assert_eq!(answer.err, "");
+    assert_eq!(answer.out.as_bytes(), place.bytes("run/findings.json"), "the file's very text");
+    let findings = answer.json();
+    assert_eq!(findings["verdict"]["word"], "not_met");
+    assert_eq!(findings["method"]["samples"], 200);
+    for arguments in [&["descend", "--json"][..], &["check", "--json"]] {
+        let answer = reeldown(arguments).ended_with(0);
+        assert_eq!(answer.err, "");
+        answer.json();
+    }
+}
+
+#[test]
+fn property_an_error_leaves_standard_output_empty() {
+    for arguments in [&["run", "--json", "no.toml"][..], &["descend", "--json", "no.toml"]] {
+        let answer = reeldown(arguments).ended_with(1);
+        assert_eq!(answer.out, "");
+        assert!(answer.err.starts_with("error: cannot read no.toml"), "{}", answer.err);
+    }
+}
+
+#[test]
+fn property_quiet_prints_nothing() {
+    let place = Place::new("quiet");
+    let answer = run(&place, &[STRICT, &["--samples", "200", "--quiet"]]).ended_with(3);
+    assert_eq!((answer.out.as_str(), answer.err.as_str()), ("", ""));
+    for name in ["findings.json", "report.md", "outcomes.parquet", "provenance.json"] {
+        assert!(!place.bytes(&format!("run/{name}")).is_empty());
+    }
+}
+
+#[test]
+fn property_a_reader_who_leaves_is_not_an_error() {
+    for arguments in [&["check"][..], &["schema", "card"], &["man"], &["completions", "bash"]] {
+        let mut child = program()
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        // One byte, as `| head -c 1` would, and then nobody is there.
+        let mut out = child.stdout.take().expect("a pipe");
+        out.read_exact(&mut [0]).expect("a byte");
+        drop(out);
+        let output = child.wait_with_output().expect("the program ends");
+        let answer = Answer::of(output).ended_with(0);
+        assert_eq!(answer.err, "");
+    }
+}
+
+/// Runs a command line on a terminal of its own, through `script` of util-linux; `None` without one.
+fn on_a_terminal(command: &str, no_colour: Option<&str>) -> Option<String> {
+    let mut script = std::process::Command::new("script");
+    script.args(["-qec", command, "/dev/null"]).env_remove("NO_COLOR").stdin(Stdio::null());
+    if let Some(value) = no_colour {
+        script.env("NO_COLOR", value);
+    }
+    let output = script.env("TERM", "xterm").output().ok()?;
+    Some(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+#[test]
+fn property_colour_is_for_terminals_and_no_color_is_respected() {
+    let place = Place::new("colour");
+    let binary = env!("CARGO_BIN_EXE_reeldown");
+    let set = "--set sensitivity.base_samples=0";
+    let command = format!("{binary} run --samples 200 {set} --out {}", place.at("run"));
+    let Some(coloured) = on_a_terminal(&command, None) else {
+        println!("skipped: there is no `script` here to make a terminal with");
+        return;
+    };
+    assert!(coloured.contains("\u{1b}["), "{coloured:?}");
+    let plain = on_a_terminal(&command, Some("1")).expect("script");
+    assert!(plain.contains("NOT MET") && !plain.contains("\u{1b}[3"), "{plain:?}");
+    let empty = on_a_terminal(&command, Some("")).expect("script");
+    assert!(empty.contains("\u{1b}["), "an empty NO_COLOR says nothing: {empty:?}");
+}
