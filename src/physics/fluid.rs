@@ -73,7 +73,7 @@ impl<R: Real> Fluid<R> {
         if !self.shear_thinning {
             return newtonian;
         }
-        self.thinned_speed(newtonian, thickening, 1.0)
+        self.thinned_speed(newtonian, thickening, R::constant(1.0))
     }
 
     /// The reel speed at which the brake takes up `power_w` > 0, rad/s.
@@ -83,7 +83,7 @@ impl<R: Real> Fluid<R> {
         if !self.shear_thinning {
             return newtonian;
         }
-        self.thinned_speed(newtonian, thickening, 2.0)
+        self.thinned_speed(newtonian, thickening, R::constant(2.0))
     }
 
     /// Solves `x^k = a^k (1 + x^m)` for the Cross group `x`, where `a` is the group at the Newtonian
@@ -92,9 +92,8 @@ impl<R: Real> Fluid<R> {
     /// In `y = ln x` this reads `k (y − ln a) = ln(1 + e^{m y})`, whose left side minus right side is
     /// increasing and concave for `m` < 1: Newton's method from `ln a`, left of the root, rises to it
     /// monotonically and, the slope lying between `k − m` and `k`, in a few steps.
-    fn thinned_speed(&self, newtonian_rad_per_s: R, thickening: R, order: f64) -> R {
+    fn thinned_speed(&self, newtonian_rad_per_s: R, thickening: R, order: R) -> R {
         let one = R::constant(1.0);
-        let order = R::constant(order);
         let group_per_speed = self.cross_time_s * thickening;
         let ln_a = (group_per_speed * newtonian_rad_per_s).ln();
         let mut y = ln_a;

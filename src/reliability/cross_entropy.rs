@@ -62,6 +62,9 @@ impl Default for CrossEntropyOptions {
     }
 }
 
+/// Factor on the learnt concentrations before the final sample.
+const WIDENING: f64 = 0.7;
+
 /// Cross-entropy importance sampling of an event, without gradients.
 ///
 /// Faults are read as no breach while learning; in the final sample they are counted as weighted
@@ -110,7 +113,7 @@ pub fn cross_entropy(
         estimate.diagnostics.extend(diagnostics);
         return Ok(estimate);
     }
-    let mut estimate = sample(state, event, &Mixture::side_by_side(&learnt), options)?;
+    let mut estimate = sample(state, event, &Mixture::side_by_side(&learnt).widened(WIDENING), options)?;
     estimate.evaluations += evaluations;
     estimate.faults += faults;
     estimate.diagnostics.extend(diagnostics);

@@ -139,6 +139,21 @@ impl Mixture {
         self.components[self.components.len() - 1].draw(stream)
     }
 
+    /// The mixture with directions and distances spread more: a density to sample from should have
+    /// heavier tails than the one that fits best, or what lies beyond carries large weights.
+    pub fn widened(&self, factor: f64) -> Mixture {
+        let wider = self.components.iter().map(|component| {
+            Component::new(
+                component.share,
+                component.mean.clone(),
+                component.concentration * factor,
+                component.shape * factor,
+                component.spread,
+            )
+        });
+        Mixture { components: wider.collect() }
+    }
+
     /// Several mixtures side by side, in equal shares.
     pub fn side_by_side(mixtures: &[Mixture]) -> Mixture {
         let share = 1.0 / mixtures.len() as f64;

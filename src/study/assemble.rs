@@ -4,7 +4,7 @@ use super::card::{self, Card};
 use super::document::{self, Node, Value};
 use super::overrides::{Destination, Override, put};
 use super::place::Text;
-use super::{Input, Stated, Study, correlation, inputs, read, sections};
+use super::{Input, Stated, Study, correlation, inputs, read, sections, tighten};
 use crate::descent::Model;
 use crate::error::{Error, Result};
 use crate::physics::design::{Design, Target};
@@ -75,6 +75,8 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
     let numerics = sections::numerics(find("numerics"))?;
     let sensitivity = sections::sensitivity(find("sensitivity"))?;
     let reliability = sections::reliability(find("reliability"))?;
+    let trade = tighten::trade(find("trade"))?;
+    let tighten = tighten::tighten(find("tighten"), &design)?;
     let limits = find("limits").map_or(Ok(Vec::new()), sections::limits)?;
     let requirement = find("requirement").map(sections::requirement).transpose()?;
     if let (Some(node), true) = (find("requirement"), limits.is_empty()) {
@@ -112,6 +114,8 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
         numerics,
         sensitivity,
         reliability,
+        trade,
+        tighten,
         stated,
         notes,
         origin: study.origin.clone(),

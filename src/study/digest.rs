@@ -1,6 +1,6 @@
 //! Digests: of the resolved study, which fixes every number of a run, and of its raw texts.
 
-use super::{LimitKind, Study};
+use super::{LimitKind, Study, TighteningCost};
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
@@ -35,6 +35,9 @@ impl Study {
                 input.known.name(),
                 input.group.as_deref().unwrap_or("")
             ));
+            if let Some(cost) = cost_text(&input.cost) {
+                lines.push(format!("cost {} {cost}", input.target.path()));
+            }
         }
         for correlation in &self.correlations {
             let (a, b) = correlation.between;
@@ -71,8 +74,29 @@ impl Study {
             "reliability {}",
             methods.map_or("default".to_owned(), |methods| methods.join(","))
         ));
+        lines.push(format!("trade samples={}", self.trade.samples));
+        let plan = &self.tighten;
+        let target = plan.target.map_or("requirement".to_owned(), |target| format!("{target:e}"));
+        lines.push(format!("tighten target={target} samples={}", plan.samples));
+        for range in &plan.design {
+            let path = range.target.path();
+            lines.push(format!("tighten design {path} {:e} {:e}", range.lower, range.upper));
+        }
         lines.push(String::new());
         lines.join("\n")
+    }
+}
+
+/// The cost of an input if it is not the usual one.
+fn cost_text(cost: &TighteningCost) -> Option<String> {
+    match cost {
+        cost if *cost == TighteningCost::default() => None,
+        TighteningCost::None => Some("none".to_owned()),
+        TighteningCost::PerHalving(cost) => Some(format!("halving={cost:e}")),
+        TighteningCost::Grades(grades) => {
+            let grades = grades.iter().map(|grade| format!("{:e}:{:e}", grade.spread, grade.cost));
+            Some(grades.collect::<Vec<_>>().join(","))
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use super::empirical::ColumnReader;
 use super::law::understand;
 use super::read;
 use super::sections::check_surface;
-use super::{Input, Known};
+use super::{Input, Known, TighteningCost, tighten};
 use crate::error::Result;
 use crate::physics::design::{Design, Target};
 use crate::physics::parameters::Parameter;
@@ -75,12 +75,15 @@ fn input(statement: &Statement, columns: ColumnReader<'_>) -> Result<(Input, boo
         Some((_, node)) => Some(read::string(node, "the name of a group")?.trim().to_owned()),
         None => each_surface.then(|| target.path()),
     };
+    let cost =
+        find("cost").map_or(Ok(TighteningCost::default()), |(_, node)| tighten::cost(node))?;
     let input = Input {
         target: *target,
         marginal: law.marginal,
         known,
         source,
         group,
+        cost,
         law_text: law.text,
         law_canonical: law.canonical,
     };

@@ -20,6 +20,7 @@ mod read;
 mod resolved;
 pub mod schema;
 mod sections;
+mod tighten;
 mod vocabulary;
 
 use crate::descent::{Model, Outcome, OutcomeQuantity};
@@ -31,6 +32,7 @@ pub use assemble::{Files, NamedText, assemble};
 pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, read_column};
 pub use overrides::Override;
 pub use resolved::{ResolvedParameter, UncertainLaw};
+pub use tighten::{DesignRange, Grade, TightenPlan, TighteningCost, TradePlan};
 
 /// A study, resolved: every value in SI, every name known.
 #[derive(Debug, Clone)]
@@ -60,6 +62,10 @@ pub struct Study {
     pub sensitivity: SensitivityPlan,
     /// How small probabilities are estimated.
     pub reliability: ReliabilityPlan,
+    /// How the tolerance trade is computed.
+    pub trade: TradePlan,
+    /// What a plan of tightenings is to reach, and by which means.
+    pub tighten: TightenPlan,
     /// The design values that were stated, as written, in the order of [`Target`].
     pub stated: Vec<Stated>,
     /// What a reader should know about how the study was understood.
@@ -87,6 +93,8 @@ pub struct Input {
     pub source: String,
     /// The factor to which it belongs in grouped sensitivities; the gaps of one statement share one.
     pub group: Option<String>,
+    /// What it costs to narrow its spread; the gaps of one statement are bought together, once.
+    pub cost: TighteningCost,
     /// The law as written, for a person.
     pub law_text: String,
     /// The law in SI with exact numbers, for the digest.

@@ -136,13 +136,17 @@ impl Override {
 }
 
 fn section_keys(section: &str) -> &'static [KeyInfo] {
-    use super::vocabulary::{NUMERICS, RELIABILITY, REQUIREMENT, SAMPLING, SENSITIVITY};
+    use super::vocabulary::{
+        NUMERICS, RELIABILITY, REQUIREMENT, SAMPLING, SENSITIVITY, TIGHTEN, TRADE,
+    };
     match section {
         "requirement" => REQUIREMENT,
         "sampling" => SAMPLING,
         "numerics" => NUMERICS,
         "sensitivity" => SENSITIVITY,
         "reliability" => RELIABILITY,
+        "trade" => TRADE,
+        "tighten" => TIGHTEN,
         _ => &[],
     }
 }

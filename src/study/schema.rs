@@ -7,8 +7,8 @@ use super::Known;
 use super::correlation::MEASURES;
 use super::laws::{Kind, LAWS, LawInfo, TERMS, keys_of};
 use super::vocabulary::{
-    CARD, CORRELATION, INPUT, KeyInfo, LIMIT, METHODS, NUMERICS, RELIABILITY, REQUIREMENT,
-    SAMPLING, SENSITIVITY, STUDY,
+    CARD, CORRELATION, GRADE, INPUT, KeyInfo, LIMIT, METHODS, NUMERICS, RELIABILITY, REQUIREMENT,
+    SAMPLING, SENSITIVITY, STUDY, TIGHTEN, TRADE,
 };
 use crate::descent::{Model, OutcomeQuantity};
 use crate::physics::parameters::{PARAMETERS, Parameter, ParameterInfo};
@@ -36,6 +36,16 @@ pub fn study() -> Value {
         table(SENSITIVITY, |info| whole(if info.name == "bootstrap" { 20 } else { 0 }), &[]);
     let methods = json!({ "type": "array", "items": { "enum": METHODS }, "uniqueItems": true });
     let reliability = table(RELIABILITY, |_| methods.clone(), &[]);
+    let trade = table(TRADE, |_| json!({ "anyOf": [{ "const": 0 }, whole(100)] }), &[]);
+    let tighten = table(
+        TIGHTEN,
+        |info| match info.name {
+            "target" => share(),
+            "samples" => whole(100),
+            _ => ranges(),
+        },
+        &[],
+    );
     let section = |info: &KeyInfo| match info.name {
         "title" => text("HABE reel-down, launch day"),
         "card" => json!({ "anyOf": [
@@ -49,6 +59,8 @@ pub fn study() -> Value {
         "sampling" => sampling.clone(),
         "numerics" => numerics.clone(),
         "sensitivity" => sensitivity.clone(),
+        "trade" => trade.clone(),
+        "tighten" => tighten.clone(),
         _ => reliability.clone(),
     };
     let mut schema = table(STUDY, section, &["title", "card"]);
@@ -198,13 +210,28 @@ fn summary(info: &ParameterInfo) -> String {
 
 /// `[design]`: every path, quoted or as nested tables.
 fn design() -> Value {
-    let mut properties = Map::new();
     let entry = |info: &ParameterInfo| {
         let mut value = described(reference(info.quantity), &summary(info));
         insert(&mut value, "examples", json!([info.baseline_text]));
         value
     };
-    let surface = reference(Quantity::Length);
+    paths(entry, reference(Quantity::Length))
+}
+
+/// `[tighten.design]`: ranges by path.
+fn ranges() -> Value {
+    let entry = |info: &ParameterInfo| described(range(info.quantity), &summary(info));
+    paths(entry, range(Quantity::Length))
+}
+
+/// The range of a design value that may move.
+fn range(quantity: Quantity) -> Value {
+    json!({ "type": "array", "items": reference(quantity), "minItems": 2, "maxItems": 2 })
+}
+
+/// A table of design paths, quoted or as nested tables.
+fn paths(entry: impl Fn(&ParameterInfo) -> Value, surface: Value) -> Value {
+    let mut properties = Map::new();
     let (nested, pattern) = by_path(&mut properties, PARAMETERS.iter(), entry, surface);
     properties.extend(nested);
     json!({
@@ -257,6 +284,7 @@ fn input(info: &ParameterInfo) -> Value {
         let value = match common.name {
             "law" => json!({ "enum": LAWS.iter().map(|law| law.name).collect::<Vec<_>>() }),
             "known" => json!({ "enum": Known::ALL.map(Known::name) }),
+            "cost" => cost(),
             "each_surface" if info.parameter != Parameter::BrakeGap => continue,
             "each_surface" => json!({ "type": "boolean", "default": false }),
             name if truncation.contains(&name) => reference(info.quantity),
@@ -291,6 +319,19 @@ fn input(info: &ParameterInfo) -> Value {
         "additionalProperties": false,
         "allOf": [{ "$ref": "#/$defs/laws" }],
     })
+}
+
+/// What tightening an input costs.
+fn cost() -> Value {
+    let grade = |info: &KeyInfo| match info.name {
+        "spread" => json!({ "type": "number", "minimum": 0, "exclusiveMaximum": 1 }),
+        _ => json!({ "type": "number", "minimum": 0 }),
+    };
+    json!({ "anyOf": [
+        { "type": "number", "minimum": 0 },
+        { "const": "none" },
+        { "type": "array", "items": table(GRADE, grade, &["spread", "cost"]), "minItems": 1 }
+    ] })
 }
 
 /// What every law asks of the other keys of its input.

@@ -27,6 +27,8 @@ pub(super) static STUDY: &[KeyInfo] = &[
     key("numerics", "how accurately a descent is integrated"),
     key("sensitivity", "how the sensitivity indices are estimated"),
     key("reliability", "how small probabilities are estimated"),
+    key("trade", "how the trade of tolerances is computed"),
+    key("tighten", "what a plan of tightenings is to reach, and by which means"),
 ];
 
 /// Keys of `[requirement]`.
@@ -59,6 +61,21 @@ pub(super) static RELIABILITY: &[KeyInfo] = &[key(
     "the methods that estimate small probabilities, besides the samples themselves",
 )];
 
+/// Keys of `[trade]`.
+pub(super) static TRADE: &[KeyInfo] =
+    &[key("samples", "samples behind each point of a trade curve; 0 leaves the trade out")];
+
+/// Keys of `[tighten]`.
+pub(super) static TIGHTEN: &[KeyInfo] = &[
+    key("target", "largest acceptable probability of any breach; without one, the requirement's"),
+    key("samples", "samples on which a plan is searched for"),
+    key("design", "design values that may move: path = [smallest, largest]"),
+];
+
+/// Keys of a grade.
+pub(super) static GRADE: &[KeyInfo] =
+    &[key("spread", "spread as a factor of the card's"), key("cost", "what the grade costs")];
+
 /// Keys of one limit.
 pub(super) static LIMIT: &[KeyInfo] = &[
     key("max", "the outcome may be at most this"),
@@ -78,6 +95,10 @@ pub(super) static INPUT: &[KeyInfo] = &[
     key("known", "when the value becomes known"),
     key("source", "where the distribution comes from"),
     key("group", "the factor to which the input belongs in grouped sensitivities"),
+    key(
+        "cost",
+        "what tightening costs: a number for each halving of the spread, a list of grades, or \"none\"",
+    ),
     key("each_surface", "one independent input per working surface (brake.gap only)"),
     key("lower", "lower end: the law's own bound, or where it is truncated"),
     key("upper", "upper end: the law's own bound, or where it is truncated"),

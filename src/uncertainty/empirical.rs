@@ -175,7 +175,9 @@ impl Empirical {
         let mean = pieces.iter().map(|&(p, middle, _)| p * middle).sum::<f64>() / total;
         let variance = pieces
             .iter()
-            .map(|&(p, middle, width)| p * ((middle - mean).powi(2) + width * width / 12.0))
+            .map(|&(p, middle, width)| {
+                p * ((middle - mean) * (middle - mean) + width * width / 12.0)
+            })
             .sum::<f64>()
             / total;
         (mean, variance.sqrt())

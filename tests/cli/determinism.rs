@@ -5,9 +5,9 @@ use reeldown::store::OutcomesReader;
 use std::path::Path;
 
 /// Samples of the whole run; more than a row group, so that its groups matter.
-pub const WHOLE: &str = "3000";
+pub const WHOLE: &str = "100000";
 /// Samples of a run to be continued; inside the second row group.
-pub const SHORTER: &str = "1601";
+pub const SHORTER: &str = "70001";
 
 /// What must not differ. `provenance.json` holds what may.
 pub const SAME: [&str; 4] =

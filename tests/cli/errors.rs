@@ -119,6 +119,5 @@ fn property_a_study_without_uncertainty_says_what_to_do() {
     let study = place.write("certain.toml", "title = \"x\"\n");
     let out = place.at("run");
     let answer = reeldown(&["run", &study, "--out", &out]).ended_with(1);
-    assert_says(&answer, &["nothing is uncertain", "reeldown descend"]);
-    reeldown(&["descend", &study]).ended_with(0);
+    assert_says(&answer, &["certain.toml:1:1", "lacks the key `card`", "what is uncertain"]);
 }

@@ -27,7 +27,8 @@ fn reference_pyarrow_pandas_and_duckdb_read_what_was_written() {
         .args([&place.at("run"), &trace])
         .output()
         .expect("the interpreter runs");
-    let [out, err] = [output.stdout, output.stderr].map(|b| String::from_utf8_lossy(&b).into_owned());
+    let [out, err] =
+        [output.stdout, output.stderr].map(|b| String::from_utf8_lossy(&b).into_owned());
     assert!(output.status.success(), "{out}{err}");
     println!("{out}");
 }

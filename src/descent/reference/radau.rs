@@ -80,11 +80,14 @@ fn coefficients() -> [[f64; 3]; 3] {
     ]
 }
 
+/// ∛3, rounded to the nearest.
+const CUBE_ROOT_OF_3: f64 = 1.442_249_570_307_408_4;
+
 /// Weights of the stages in the error estimate, and its shift `γ0`.
 fn error_weights() -> ([f64; 3], f64) {
     let s6 = 6f64.sqrt();
     let weights = [(-13.0 - 7.0 * s6) / 3.0, (-13.0 + 7.0 * s6) / 3.0, -1.0 / 3.0];
-    (weights, 3.0 + 3f64.cbrt() * 3f64.cbrt() - 3f64.cbrt())
+    (weights, 3.0 + CUBE_ROOT_OF_3 * CUBE_ROOT_OF_3 - CUBE_ROOT_OF_3)
 }
 
 /// Attempts a step of length `h`; `None` when the stages could not be solved for: take a shorter one.
@@ -166,7 +169,7 @@ fn estimate_error<const N: usize>(
     if !matrix.lu().solve_mut(&mut error) {
         return None;
     }
-    let square: f64 = (0..N).map(|i| (error[i] / scale[i]).powi(2)).sum();
+    let square: f64 = (0..N).map(|i| error[i] / scale[i]).map(|e| e * e).sum();
     let norm = (square / N as f64).sqrt();
     norm.is_finite().then_some(norm)
 }

@@ -41,7 +41,30 @@ pub fn descend_with(
     results: &mut [Result<Outcome, Fault>],
 ) -> Counts {
     let count = batch.len().min(results.len());
-    dispatch::dispatch(set, model, settings, &batch[..count], &mut results[..count])
+    let (batch, results) = (&batch[..count], &mut results[..count]);
+    deep(|| dispatch::dispatch(set, model, settings, batch, results))
+}
+
+/// Runs the kernel. Without optimisation its one inlined function keeps thousands of intermediate vectors
+/// on the stack, more than a test's thread has, so it gets a deeper one then.
+#[cfg(debug_assertions)]
+fn deep(kernel: impl FnOnce() -> Counts + Send) -> Counts {
+    const STACK_BYTES: usize = 64 << 20;
+    std::thread::scope(|scope| {
+        let thread =
+            std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, kernel);
+        match thread.map(std::thread::ScopedJoinHandle::join) {
+            Ok(Ok(counts)) => counts,
+            Ok(Err(panic)) => std::panic::resume_unwind(panic),
+            Err(error) => panic!("no thread for the kernel: {error}"),
+        }
+    })
+}
+
+#[cfg(not(debug_assertions))]
+#[inline]
+fn deep(kernel: impl FnOnce() -> Counts) -> Counts {
+    kernel()
 }
 
 /// The instruction set that [`descend`] uses here.

@@ -64,7 +64,8 @@ pub(super) fn solve(
             };
         }
         // After a step s the error of a third-order method is about K² s³, K the relative curvature.
-        let error = step.abs() * (step * curvature.abs().max(1.0)).powi(2);
+        let bend = step * curvature.abs().max(1.0);
+        let error = step.abs() * bend * bend;
         if next == x || high == low || (inside && error < 1e-17) {
             return next;
         }

@@ -6,6 +6,7 @@
 //! Sources: openturns/otbenchmark (the RP collection of TNO's reliability challenge), uqtestfuns.
 
 pub mod components;
+pub mod coverage;
 pub mod dimensions;
 pub mod laws;
 pub mod oscillators;

@@ -1,0 +1,136 @@
+//! How often a method's interval holds the truth: one row of a coverage certificate.
+
+use super::Benchmark;
+use reeldown::reliability::crude::{CrudeOptions, crude_monte_carlo};
+use reeldown::reliability::cross_entropy::{CrossEntropyOptions, cross_entropy};
+use reeldown::reliability::design_point::SearchOptions;
+use reeldown::reliability::directional::{DirectionalOptions, directional_sampling};
+use reeldown::reliability::estimate::{Estimate, Method};
+use reeldown::reliability::importance::{ImportanceOptions, importance_sampling};
+use reeldown::reliability::line::{LineOptions, line_sampling};
+use reeldown::reliability::subset::{SubsetOptions, subset_simulation};
+
+/// The methods that state intervals.
+pub const METHODS: [Method; 6] = [
+    Method::CrudeMonteCarlo,
+    Method::ImportanceSampling,
+    Method::SubsetSimulation,
+    Method::LineSampling,
+    Method::DirectionalSampling,
+    Method::CrossEntropy,
+];
+
+/// One method's answer with its default options, save the seed and the effort: a share of the default
+/// samples of each method.
+pub fn answer(method: Method, benchmark: &Benchmark, seed: u64, effort: f64) -> Estimate {
+    let (state, event) = (&benchmark.limits, benchmark.event);
+    let search = SearchOptions { seed, ..SearchOptions::default() };
+    let share = |samples: f64| (samples * effort) as u64;
+    match method {
+        Method::CrudeMonteCarlo => {
+            let options = CrudeOptions { seed, samples: share(1e5), ..Default::default() };
+            crude_monte_carlo(state, event, &options)
+        }
+        Method::ImportanceSampling => {
+            let options =
+                ImportanceOptions { seed, search, samples: share(2e4), ..Default::default() };
+            importance_sampling(state, event, &options).map(|(estimate, _)| estimate)
+        }
+        Method::SubsetSimulation => {
+            let samples_per_level = share(1e3) as usize;
+            let options = SubsetOptions { seed, samples_per_level, ..Default::default() };
+            subset_simulation(state, event, &options)
+        }
+        Method::LineSampling => {
+            let options = LineOptions { seed, search, lines: share(1e3), ..Default::default() };
+            line_sampling(state, event, &options)
+        }
+        Method::DirectionalSampling => {
+            let options =
+                DirectionalOptions { seed, directions: share(2e3), ..Default::default() };
+            directional_sampling(state, event, &options)
+        }
+        Method::CrossEntropy => {
+            let options =
+                CrossEntropyOptions { seed, final_samples: share(2e4), ..Default::default() };
+            cross_entropy(state, event, &options)
+        }
+        _ => panic!("{} states no interval", method.name()),
+    }
+    .expect("benchmarks can be evaluated")
+}
+
+/// What many seeds of one method on one problem showed.
+pub struct Coverage {
+    pub method: Method,
+    pub problem: &'static str,
+    /// Seeds run.
+    pub seeds: u64,
+    /// Seeds that stated an interval.
+    pub stated: u64,
+    /// Stated intervals that hold the truth, with the reference's own error allowed for.
+    pub held: u64,
+    /// Stated intervals wholly below the truth.
+    pub below: u64,
+    /// Mean estimate over the truth; none if no seed gave a number.
+    pub ratio: Option<f64>,
+    /// Root mean square of the relative error.
+    pub relative_error: Option<f64>,
+    /// Mean number of evaluations.
+    pub evaluations: f64,
+}
+
+impl Coverage {
+    /// Runs seeds 0, 1, … of a method on a problem.
+    pub fn measure(method: Method, benchmark: &Benchmark, seeds: u64, effort: f64) -> Coverage {
+        let truth = benchmark.probability;
+        let (mut stated, mut held, mut below, mut cost) = (0, 0, 0, 0);
+        let mut ratios = Vec::new();
+        for seed in 0..seeds {
+            let estimate = answer(method, benchmark, seed, effort);
+            cost += estimate.evaluations;
+            ratios.extend(estimate.probability.map(|p| p / truth));
+            if let Some(interval) = estimate.interval.interval() {
+                let slack = truth * benchmark.relative_error;
+                stated += 1;
+                let low = interval.upper < truth - slack;
+                below += u64::from(low);
+                held += u64::from(!low && interval.lower <= truth + slack);
+            }
+        }
+        let count = ratios.len() as f64;
+        let mean = |of: &dyn Fn(f64) -> f64| {
+            (!ratios.is_empty()).then(|| ratios.iter().map(|&r| of(r)).sum::<f64>() / count)
+        };
+        Coverage {
+            method,
+            problem: benchmark.id,
+            seeds,
+            stated,
+            held,
+            below,
+            ratio: mean(&|r| r),
+            relative_error: mean(&|r| (r - 1.0) * (r - 1.0)).map(f64::sqrt),
+            evaluations: cost as f64 / seeds as f64,
+        }
+    }
+
+    /// Share of the stated intervals that hold the truth, and its Monte Carlo standard error.
+    pub fn share(&self) -> Option<(f64, f64)> {
+        let n = self.stated as f64;
+        let share = self.held as f64 / n;
+        // A share of 1 has no binomial error of its own; one miss more or less is what it could be.
+        let error = (share * (1.0 - share) / n).sqrt().max(1.0 / n);
+        (self.stated > 0).then_some((share, error))
+    }
+
+    /// In words, against 95 %: what the certificate says about this pair.
+    pub fn verdict(&self) -> &'static str {
+        match self.share() {
+            None => "unfit: says so, states no interval",
+            Some((share, error)) if share + 2.0 * error < 0.93 => "FALLS SHORT",
+            Some(_) if 2 * self.stated < self.seeds => "holds where stated; mostly withdrawn",
+            Some(_) => "holds",
+        }
+    }
+}
