@@ -21,11 +21,8 @@ struct Arguments {
 }
 
 fn arguments() -> Result<Arguments, String> {
-    let mut found = Arguments {
-        seeds: 1000,
-        out: PathBuf::from("reports/certificates"),
-        only: String::new(),
-    };
+    let mut found =
+        Arguments { seeds: 1000, out: PathBuf::from("reports/certificates"), only: String::new() };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let value = words.next().ok_or(format!("{word} needs a value"))?;
@@ -62,10 +59,9 @@ fn run(arguments: &Arguments) -> Result<(), String> {
         }
     }
     std::fs::create_dir_all(&arguments.out).map_err(|why| why.to_string())?;
-    for (file, text) in [
-        ("coverage.md", markdown(&rows, arguments.seeds)),
-        ("coverage.csv", csv(&rows)),
-    ] {
+    for (file, text) in
+        [("coverage.md", markdown(&rows, arguments.seeds)), ("coverage.csv", csv(&rows))]
+    {
         let path = arguments.out.join(file);
         std::fs::write(&path, text).map_err(|why| format!("{}: {why}", path.display()))?;
     }

@@ -4,11 +4,13 @@
 //! the work is cut into batches of fixed size at fixed places, and whatever is summed is summed in the
 //! order of the samples, so that nothing depends on the number of threads.
 
+pub mod common_numbers;
 mod evaluate;
 mod limit_state;
 mod pick_freeze;
 mod rare;
 mod record;
+pub mod trade;
 mod verification;
 
 use crate::error::{Error, Result};

@@ -180,9 +180,14 @@ impl Run<'_> {
     }
 
     fn interrupted(&self, computed: u64) -> Ending {
+        let samples = self.study.sampling.samples;
+        let when = if computed < samples {
+            format!("stopped after {computed} of {samples} samples")
+        } else {
+            format!("stopped after all {samples} samples, before the report")
+        };
         say_error(&format!(
-            "stopped after {computed} of {} samples, which are in {}\nto go on: {} --resume{}",
-            self.study.sampling.samples,
+            "{when}; they are in {}\nto go on: {} --resume{}",
             self.directory.join(OUTCOMES).display(),
             self.command(),
             self.arguments.out.as_ref().map_or(String::new(), |out| {

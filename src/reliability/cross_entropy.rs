@@ -67,8 +67,8 @@ const WIDENING: f64 = 0.7;
 
 /// Cross-entropy importance sampling of an event, without gradients.
 ///
-/// Faults are read as no breach while learning; in the final sample they are counted as weighted
-/// breaches in `probability_with_faults` and in the upper end of the interval.
+/// Faults met while learning are learnt as if they were breaches, beside the breaches; in the final
+/// sample they are counted as weighted breaches in `probability_with_faults` and in the upper end of the interval.
 ///
 /// # Errors
 /// If an option is out of range, the event does not fit, or the limit state fails.
@@ -93,16 +93,23 @@ pub fn cross_entropy(
     let mut learnt: Vec<Mixture> = Vec::new();
     let (mut evaluations, mut faults, mut diagnostics) = (0, 0, Vec::new());
     for (part, &limit) in parts.iter().enumerate() {
-        let mut evaluator = Evaluator::new(state, limit, FaultReading::Safe)?;
-        let (mixture, levels) = learn(&mut evaluator, part as u64, options)?;
-        evaluations += evaluator.evaluations;
-        faults += evaluator.faults;
-        match mixture {
-            Some(mixture) => {
-                diagnostics.push(format!("learnt {limit:?} in {levels} levels"));
-                learnt.push(mixture);
+        // Faults that were met are learnt as well, or their weights would be wild.
+        for (which, reading) in [FaultReading::Safe, FaultReading::Breach].into_iter().enumerate() {
+            if which == 1 && faults == 0 {
+                continue;
             }
-            None => diagnostics.push(format!("{limit:?} was not reached in {levels} levels")),
+            let mut evaluator = Evaluator::new(state, limit, reading)?;
+            let key = 2 * part as u64 + which as u64;
+            let (mixture, levels) = learn(&mut evaluator, key, options)?;
+            evaluations += evaluator.evaluations;
+            faults += evaluator.faults;
+            match mixture {
+                Some(mixture) => {
+                    diagnostics.push(format!("learnt {limit:?} in {levels} levels"));
+                    learnt.push(mixture);
+                }
+                None => diagnostics.push(format!("{limit:?} was not reached in {levels} levels")),
+            }
         }
     }
     if learnt.is_empty() {
@@ -113,7 +120,8 @@ pub fn cross_entropy(
         estimate.diagnostics.extend(diagnostics);
         return Ok(estimate);
     }
-    let mut estimate = sample(state, event, &Mixture::side_by_side(&learnt).widened(WIDENING), options)?;
+    let mut estimate =
+        sample(state, event, &Mixture::side_by_side(&learnt).widened(WIDENING), options)?;
     estimate.evaluations += evaluations;
     estimate.faults += faults;
     estimate.diagnostics.extend(diagnostics);
@@ -196,7 +204,11 @@ fn learn(
 
 /// The smoothed breach, Φ(−g/σ).
 fn smoothed(margin: f64, sigma: f64) -> f64 {
-    if sigma.is_finite() { normal::cdf(-margin / sigma) } else { f64::from(u8::from(margin.is_finite())) }
+    if sigma.is_finite() {
+        normal::cdf(-margin / sigma)
+    } else {
+        f64::from(u8::from(margin.is_finite()))
+    }
 }
 
 fn kept_share(next: f64, last: f64) -> f64 {
@@ -290,14 +302,8 @@ fn sample(
     }
     safe.samples = options.final_samples;
     breach.samples = options.final_samples;
-    let mut estimate = combined(
-        Method::CrossEntropy,
-        event,
-        &safe,
-        &breach,
-        options.confidence,
-        &options.checks,
-    );
+    let mut estimate =
+        combined(Method::CrossEntropy, event, &safe, &breach, options.confidence, &options.checks);
     estimate.evaluations = evaluator.evaluations;
     estimate.faults = evaluator.faults;
     Ok(estimate)

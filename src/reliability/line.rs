@@ -199,14 +199,8 @@ fn run(
             / directions.shares[own];
     }
     let uncertain = uncertain / options.lines as f64;
-    let mut estimate = combined(
-        Method::LineSampling,
-        event,
-        &lines,
-        &lines,
-        options.confidence,
-        &options.checks,
-    );
+    let mut estimate =
+        combined(Method::LineSampling, event, &lines, &lines, options.confidence, &options.checks);
     widen(&mut estimate, uncertain);
     estimate.evaluations = evaluator.evaluations;
     estimate.faults = evaluator.faults;

@@ -253,11 +253,7 @@ fn first_owners(units: &[Vec<f64>], weights: &[f64], components: usize) -> Vec<V
 }
 
 /// Responsibilities of the components for the points, and the mean logarithm of the mixture.
-fn expect(
-    fitted: &[Component],
-    points: &[&Vec<f64>],
-    weights: &[f64],
-) -> (Vec<Vec<f64>>, f64) {
+fn expect(fitted: &[Component], points: &[&Vec<f64>], weights: &[f64]) -> (Vec<Vec<f64>>, f64) {
     let mut likelihood = 0.0;
     let mut owners = vec![vec![0.0; points.len()]; fitted.len()];
     for (i, point) in points.iter().enumerate() {
@@ -343,7 +339,10 @@ mod tests {
         for kappa in [1e-3, 1.0, 30.0, 600.0, 3000.0] {
             let exact = kappa + ln(1.0 - exp(-2.0 * kappa)) - ln(2.0 * kappa);
             let found = ln_bessel_series(0.5, kappa);
-            assert!((found - exact).abs() < 1e-11 * exact.abs().max(1.0), "{kappa}: {found} {exact}");
+            assert!(
+                (found - exact).abs() < 1e-11 * exact.abs().max(1.0),
+                "{kappa}: {found} {exact}"
+            );
         }
     }
 

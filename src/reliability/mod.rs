@@ -8,6 +8,7 @@ pub mod binomial_tails;
 pub mod breach_counts;
 pub mod demonstration;
 pub mod normal_tolerance;
+pub mod paired;
 pub mod probability;
 pub mod quantiles;
 pub mod replicates;

@@ -99,6 +99,10 @@ fn second_order(event: Event, beta: f64, curvatures: Option<Vec<f64>>) -> Second
             return Estimate::without_number(method, event, why);
         }
         let probability = tail * terms.map(|term| term.sqrt().recip()).product::<f64>();
+        if probability > 1.0 {
+            let why = "the formula gives more than 1: too many curvatures are near −1/β";
+            return Estimate::without_number(method, event, why);
+        }
         first_order(method, event, if mirrored { 1.0 - probability } else { probability })
     };
     let ratio = if tail > 0.0 { normal::density(distance) / tail } else { distance };

@@ -1,7 +1,7 @@
 //! The verdict and the probabilities for a terminal.
 
 use super::tables::table;
-use super::view::view;
+use super::view::{Rare, RareRow, view};
 use crate::findings::{Findings, VerdictWord};
 
 /// Whether escape sequences are wanted.
@@ -43,16 +43,20 @@ pub fn terminal(findings: &Findings, style: Style) -> String {
     if let Some(sharpest) = &view.verdict.sharpest {
         text += &format!("{}\n", wrapped(&sharpest.replace('`', "")));
     }
+    let interval_header = format!("{} interval", view.interval_label);
     if !view.probabilities.is_empty() {
-        let interval = format!("{} interval", view.interval_label);
-        let header = ["event", "breaches", "probability", &interval];
+        let header = ["event", "breaches", "probability", &interval_header];
         let rows = view.probabilities.iter().filter(|row| !row.pair).map(|row| {
             [&row.title, &row.counts, &row.probability, &row.interval].map(String::clone)
         });
         text += &format!("\n{}\n", table(&header, 1..4, rows, None));
     }
-    for statement in &view.statements {
-        text += &format!("{}\n", wrapped(statement));
+    if view.rare.is_empty() {
+        for statement in &view.statements {
+            text += &format!("{}\n", wrapped(statement));
+        }
+    } else {
+        text += &format!("\n{}\n", rare(&view.rare, &interval_header));
     }
     if let Some(output) = view.drivers.outputs.first().filter(|output| !output.rows.is_empty()) {
         let header = [&format!("drivers of {}", output.title), "alone", "with interactions"];
@@ -69,6 +73,27 @@ pub fn terminal(findings: &Findings, style: Style) -> String {
         for line in &view.exceptions {
             text += &format!("{}\n", wrapped(line));
         }
+    }
+    text
+}
+
+/// The sharpest estimate of each rare breach, and every agreement check that failed.
+fn rare(events: &[Rare], interval_header: &str) -> String {
+    let rows = events.iter().map(|event| {
+        let shown = event.sharpest.and_then(|k| event.rows.get(k));
+        let cell = |read: fn(&RareRow) -> String| shown.map_or("none".to_owned(), read);
+        [
+            event.title.clone(),
+            cell(|row| row.method.to_owned()),
+            cell(|row| row.descents.clone()),
+            cell(|row| row.probability.clone()),
+            cell(|row| row.interval.clone()),
+        ]
+    });
+    let header = ["rare breach", "sharpest method", "descents", "probability", interval_header];
+    let mut text = table(&header, 2..5, rows, None);
+    for event in events.iter().filter(|event| event.agreement.starts_with("AGREEMENT")) {
+        text += &format!("\n{}: {}", event.title, event.agreement);
     }
     text
 }

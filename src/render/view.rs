@@ -63,6 +63,8 @@ pub(super) struct Demonstration {
 pub(super) struct Rare {
     pub title: String,
     pub rows: Vec<RareRow>,
+    /// Which of the rows has the smallest error.
+    pub sharpest: Option<usize>,
     pub agreement: String,
     pub story: Option<String>,
 }
@@ -297,6 +299,14 @@ fn rare(finding: &RareFinding) -> Rare {
                 descents: count(estimate.evaluations),
             })
             .collect(),
+        sharpest: finding
+            .estimates
+            .iter()
+            .enumerate()
+            .filter(|(_, estimate)| estimate.interval.interval().is_some())
+            .filter_map(|(k, estimate)| Some((k, estimate.relative_standard_error()?)))
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(k, _)| k),
         agreement: finding.agreement_statement.clone(),
         story: finding.design_point.as_ref().map(|point| point.statement.clone()),
     }

@@ -13,9 +13,12 @@ pub mod sobol_indices;
 // From samples already run.
 pub mod borgonovo;
 mod classes;
+pub mod conditional_normal;
 pub mod given_data;
 pub mod hsic;
 pub mod pawn;
 pub mod rank_index;
 pub mod regression;
+pub mod reweighting;
 pub mod score;
+pub mod score_sums;

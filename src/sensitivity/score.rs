@@ -11,7 +11,7 @@ use crate::numerics::special::normal;
 use serde::Serialize;
 
 /// With fewer breaches, or fewer clean samples, than this the normal approximation is not earned.
-const FEWEST_BREACHES: u64 = 10;
+pub(super) const FEWEST_BREACHES: u64 = 10;
 
 /// The derivative of one breach probability with respect to one parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]

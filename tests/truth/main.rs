@@ -1,8 +1,10 @@
 //! Truth: analytic cases, published figures, independent tools.
 
+mod benchmarks;
 mod breach_probability;
 mod paper_statements;
 mod reference_descents;
+mod reliability_methods;
 mod vector_descents;
 mod vector_elementary;
 mod vector_members;

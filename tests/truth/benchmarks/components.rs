@@ -43,9 +43,7 @@ fn r_minus_s_squared(z: &[f64], margins: &mut Vec<f64>) {
 fn cantilever(z: &[f64], margins: &mut Vec<f64>) {
     let (load, height) = (1000.0 + 200.0 * z[0], 250.0 + 37.5 * z[1]);
     let span2 = 6000.0 * 6000.0;
-    margins.push(
-        6000.0 / 325.0 - 1.5 * span2 * span2 / 2.6e10 * load / (height * height * height),
-    );
+    margins.push(6000.0 / 325.0 - 1.5 * span2 * span2 / 2.6e10 * load / (height * height * height));
 }
 
 fn rp38(z: &[f64], margins: &mut Vec<f64>) {

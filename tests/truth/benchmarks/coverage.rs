@@ -1,8 +1,8 @@
 //! How often a method's interval holds the truth: one row of a coverage certificate.
 
 use super::Benchmark;
-use reeldown::reliability::crude::{CrudeOptions, crude_monte_carlo};
 use reeldown::reliability::cross_entropy::{CrossEntropyOptions, cross_entropy};
+use reeldown::reliability::crude::{CrudeOptions, crude_monte_carlo};
 use reeldown::reliability::design_point::SearchOptions;
 use reeldown::reliability::directional::{DirectionalOptions, directional_sampling};
 use reeldown::reliability::estimate::{Estimate, Method};
@@ -46,8 +46,7 @@ pub fn answer(method: Method, benchmark: &Benchmark, seed: u64, effort: f64) -> 
             line_sampling(state, event, &options)
         }
         Method::DirectionalSampling => {
-            let options =
-                DirectionalOptions { seed, directions: share(2e3), ..Default::default() };
+            let options = DirectionalOptions { seed, directions: share(2e3), ..Default::default() };
             directional_sampling(state, event, &options)
         }
         Method::CrossEntropy => {

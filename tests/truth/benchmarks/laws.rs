@@ -16,10 +16,11 @@ pub fn lognormal(mean: f64, variation: f64, z: f64) -> f64 {
 }
 
 fn rp8(z: &[f64], margins: &mut Vec<f64>) {
-    let x: Vec<f64> = [(120.0, 0.1), (120.0, 0.1), (120.0, 0.1), (120.0, 0.1), (50.0, 0.2), (40.0, 0.2)]
-        .iter()
-        .zip(z)
-        .map(|(&(mean, variation), &z)| lognormal(mean, variation, z))
-        .collect();
+    let x: Vec<f64> =
+        [(120.0, 0.1), (120.0, 0.1), (120.0, 0.1), (120.0, 0.1), (50.0, 0.2), (40.0, 0.2)]
+            .iter()
+            .zip(z)
+            .map(|(&(mean, variation), &z)| lognormal(mean, variation, z))
+            .collect();
     margins.push(x[0] + 2.0 * x[1] + 2.0 * x[2] + x[3] - 5.0 * x[4] - 5.0 * x[5]);
 }

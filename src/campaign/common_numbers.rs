@@ -1,0 +1,379 @@
+//! One sample of points, seen through changed laws and designs: common random numbers.
+//!
+//! Row `k` of every variant comes from the same point of the unit cube, so two variants differ where the
+//! change matters and nowhere else, and the difference of their breach probabilities has a far smaller
+//! error than either.
+
+use super::{Ensemble, Progress, in_parallel, sampler};
+use crate::error::{Error, Result};
+use crate::numerics::columns::Columns;
+use crate::outcomes::OutcomeTable;
+use crate::physics::Target;
+use crate::reliability::paired::PairedCounts;
+use crate::reliability::probability::Proportion;
+use crate::sampling::{Design, Sampler};
+use crate::sensitivity::conditional_normal::Conditioning;
+use crate::streams::Purpose;
+use crate::study::Study;
+use crate::uncertainty::Marginal;
+
+/// What a variant changes in a study.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Change {
+    /// Inputs that follow another law.
+    pub marginals: Vec<(usize, Marginal)>,
+    /// Inputs whose value, SI, is known; the others follow their laws given it.
+    pub known: Vec<(usize, f64)>,
+    /// Design values, SI. Of an input, the law's mean moves there.
+    pub design: Vec<(Target, f64)>,
+}
+
+impl Change {
+    /// The spread of these inputs multiplied by `factor`, truncation limits moving along; a factor of 0
+    /// is [`Self::LEAST_SPREAD`].
+    ///
+    /// # Errors
+    /// If a law cannot be stretched so.
+    pub fn spread(study: &Study, columns: &[usize], factor: f64) -> Result<Self> {
+        Self::default().and_spread(study, columns, factor)
+    }
+
+    /// The factor that stands for no spread at all.
+    pub const LEAST_SPREAD: f64 = 1e-6;
+
+    /// This change, and the spread of these inputs multiplied by `factor`.
+    ///
+    /// # Errors
+    /// If a law cannot be stretched so.
+    pub fn and_spread(mut self, study: &Study, columns: &[usize], factor: f64) -> Result<Self> {
+        for &column in columns {
+            let marginal =
+                study.inputs[column].marginal.with_spread(factor.max(Self::LEAST_SPREAD))?;
+            self.marginals.push((column, marginal));
+        }
+        Ok(self)
+    }
+
+    /// The mean of these inputs moved by `delta`, SI, truncation limits moving along.
+    ///
+    /// # Errors
+    /// If a law cannot be moved so.
+    pub fn shift(study: &Study, columns: &[usize], delta: f64) -> Result<Self> {
+        let mut change = Self::default();
+        for &column in columns {
+            let marginal = study.inputs[column].marginal.with_shifted_mean(delta)?;
+            change.marginals.push((column, marginal));
+        }
+        Ok(change)
+    }
+
+    /// This change, and a design value.
+    pub fn and_design(mut self, target: Target, value: f64) -> Self {
+        self.design.push((target, value));
+        self
+    }
+}
+
+/// The event whose probability is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Event {
+    /// Any limit is breached.
+    Any,
+    /// This limit is.
+    Limit(usize),
+}
+
+/// Which limits each row breaches.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Breaches {
+    breached: Vec<u32>,
+    unknown: Vec<u32>,
+}
+
+impl Breaches {
+    /// The breaches of a table's rows.
+    pub fn of(study: &Study, table: &OutcomeTable) -> Self {
+        let margin = |i: usize, k: usize| {
+            let limit = &study.limits[i];
+            limit.margin_of(table.outcomes.get(k, limit.outcome as usize))
+        };
+        Self::from_margins(study.limits.len(), table.rows(), margin)
+    }
+
+    /// The breaches of rows by the margin of limit `i` in row `k`; NaN where it is not known.
+    pub fn from_margins(limits: usize, rows: usize, margin: impl Fn(usize, usize) -> f64) -> Self {
+        let bits = |holds: &dyn Fn(f64) -> bool| {
+            let row = |k| (0..limits).fold(0, |bits, i| bits | u32::from(holds(margin(i, k))) << i);
+            (0..rows).map(row).collect()
+        };
+        Breaches { breached: bits(&|m| m < 0.0), unknown: bits(&f64::is_nan) }
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.breached.len()
+    }
+
+    /// Whether the event happened in row `k`; `None` where that is not known.
+    pub fn happened(&self, event: Event, k: usize) -> Option<bool> {
+        let mask = match event {
+            Event::Any => u32::MAX,
+            Event::Limit(i) => 1 << i,
+        };
+        match (self.breached[k] & mask != 0, self.unknown[k] & mask != 0) {
+            (true, _) => Some(true),
+            (false, true) => None,
+            (false, false) => Some(false),
+        }
+    }
+
+    /// The event in each row as a number: 1, 0, or NaN where it is not known.
+    pub fn indicator(&self, event: Event) -> Vec<f64> {
+        let number = |k| self.happened(event, k).map_or(f64::NAN, |yes| f64::from(u8::from(yes)));
+        (0..self.rows()).map(number).collect()
+    }
+
+    /// The event counted over some rows.
+    pub fn counts(&self, event: Event, rows: impl Iterator<Item = usize>) -> Proportion {
+        let mut counts = Proportion { breaches: 0, faults: 0, samples: 0 };
+        for k in rows {
+            let happened = self.happened(event, k);
+            counts.samples += 1;
+            counts.breaches += u64::from(happened == Some(true));
+            counts.faults += u64::from(happened.is_none());
+        }
+        counts
+    }
+
+    /// The event counted over all rows.
+    pub fn count(&self, event: Event) -> Proportion {
+        self.counts(event, 0..self.rows())
+    }
+
+    /// Share of rows with a breach, a row that is not known taken as one: what a search goes by.
+    pub fn worst_share(&self) -> f64 {
+        let counts = self.count(Event::Any);
+        (counts.most_breaches()) as f64 / counts.samples.max(1) as f64
+    }
+
+    /// How this variant differs from `base`, row by row.
+    pub fn against(
+        &self,
+        base: &Breaches,
+        event: Event,
+        rows: impl Iterator<Item = usize>,
+    ) -> PairedCounts {
+        let mut counts = PairedCounts::default();
+        for k in rows {
+            counts.push(base.happened(event, k), self.happened(event, k));
+        }
+        counts
+    }
+}
+
+/// A sample of points of a study, kept to be looked at again.
+#[derive(Debug)]
+pub struct CommonSample<'a> {
+    study: &'a Study,
+    replicates: usize,
+    /// Uniforms of independent inputs, correlated standard normal values of others.
+    points: Columns,
+    inputs: Columns,
+}
+
+impl<'a> CommonSample<'a> {
+    /// The first `rows` points of the study's own design; fewer if it has fewer. Rows of every replicate
+    /// are there in equal number.
+    ///
+    /// # Errors
+    /// What [`sampler`] refuses.
+    pub fn of_run(study: &'a Study, rows: u64) -> Result<Self> {
+        let sampler = sampler(study)?;
+        let replicates = u64::from(sampler.replicates());
+        let rows = (rows.min(sampler.samples()) / replicates).max(1) * replicates;
+        Self::drawn(study, &sampler, rows)
+    }
+
+    /// `rows` independent points for a purpose.
+    ///
+    /// # Errors
+    /// If nothing is uncertain.
+    pub fn independent(study: &'a Study, rows: u64, purpose: Purpose) -> Result<Self> {
+        let seed = study.sampling.seed;
+        let dimension = study.joint.dimension();
+        let sampler = Sampler::new(Design::MonteCarlo, dimension, rows, 1, seed, purpose)?;
+        Self::drawn(study, &sampler, rows)
+    }
+
+    fn drawn(study: &'a Study, sampler: &Sampler, rows: u64) -> Result<Self> {
+        let mut uniforms = Columns::new(rows as usize, study.joint.dimension());
+        sampler.fill(0, &mut uniforms)?;
+        let points = match study.joint.copula() {
+            None => uniforms,
+            Some(copula) => {
+                let mut normals = Columns::new(uniforms.rows(), uniforms.columns());
+                for j in 0..uniforms.columns() {
+                    let column = normals.column_mut(j);
+                    crate::numerics::special::normal::quantile_column(uniforms.column(j), column);
+                }
+                let mut correlated = Columns::default();
+                copula.correlate(&normals, &mut correlated);
+                correlated
+            }
+        };
+        let replicates = sampler.replicates() as usize;
+        let inputs = Columns::new(points.rows(), points.columns());
+        let mut sample = CommonSample { study, replicates, points, inputs };
+        let columns: Vec<usize> = (0..study.inputs.len()).collect();
+        let values = in_parallel(&columns, |&j| sample.column(&study.inputs[j].marginal, j));
+        for (j, column) in values.iter().enumerate() {
+            sample.inputs.column_mut(j).copy_from_slice(column);
+        }
+        Ok(sample)
+    }
+
+    /// The study.
+    pub fn study(&self) -> &'a Study {
+        self.study
+    }
+
+    /// Number of points.
+    pub fn rows(&self) -> usize {
+        self.points.rows()
+    }
+
+    /// Independently randomised replicates to which the points belong in turn; 1 if every point is
+    /// independent.
+    pub fn replicates(&self) -> usize {
+        self.replicates
+    }
+
+    /// The unchanged inputs, SI.
+    pub fn inputs(&self) -> &Columns {
+        &self.inputs
+    }
+
+    fn column(&self, marginal: &Marginal, j: usize) -> Vec<f64> {
+        let mut values = vec![0.0; self.rows()];
+        match self.study.joint.copula() {
+            None => marginal.quantile_column(self.points.column(j), &mut values),
+            Some(_) => marginal.from_standard_normal_column(self.points.column(j), &mut values),
+        }
+        values
+    }
+
+    /// The breaches of the unchanged study.
+    ///
+    /// # Errors
+    /// As [`Self::changed`].
+    pub fn base(&self, progress: &Progress) -> Result<Breaches> {
+        self.changed(&Change::default(), progress)
+    }
+
+    /// The breaches of a variant of the study at these points.
+    ///
+    /// # Errors
+    /// If a design value does not fit an input's law.
+    pub fn changed(&self, change: &Change, progress: &Progress) -> Result<Breaches> {
+        let mut study = self.study.clone();
+        let mut inputs = self.inputs.clone();
+        let mut marginals = change.marginals.clone();
+        for &(target, value) in &change.design {
+            study.design.set(target, value);
+            for (j, input) in self.study.inputs.iter().enumerate() {
+                if input.target == target {
+                    let changed = marginals.iter().position(|(k, _)| *k == j);
+                    let law = changed.map_or(&input.marginal, |at| &marginals[at].1);
+                    let moved = law.with_shifted_mean(value - law.law().mean())?;
+                    marginals.retain(|(k, _)| *k != j);
+                    marginals.push((j, moved));
+                }
+            }
+        }
+        for (j, marginal) in &marginals {
+            inputs.column_mut(*j).copy_from_slice(&self.column(marginal, *j));
+        }
+        if !change.known.is_empty() {
+            self.condition(&change.known, &marginals, &mut inputs)?;
+        }
+        let table = Ensemble::new(&study).at_inputs(&inputs, progress);
+        Ok(Breaches::of(&study, &table))
+    }
+
+    /// Gives every row the known values, and the inputs that depend on them their laws given those.
+    fn condition(
+        &self,
+        known: &[(usize, f64)],
+        marginals: &[(usize, Marginal)],
+        inputs: &mut Columns,
+    ) -> Result<()> {
+        let law = |j: usize| {
+            let changed = marginals.iter().find(|(k, _)| *k == j);
+            changed.map_or(&self.study.inputs[j].marginal, |(_, marginal)| marginal)
+        };
+        if let Some(copula) = self.study.joint.copula() {
+            let given: Vec<usize> = known.iter().map(|(j, _)| *j).collect();
+            let targets: Vec<f64> =
+                known.iter().map(|&(j, value)| law(j).to_standard_normal(value)).collect();
+            if targets.iter().any(|z| !z.is_finite()) {
+                return Err(Error::argument("a known value lies outside its law's support"));
+            }
+            let conditioning = Conditioning::new(self.rows_of_correlation(copula), &given)?;
+            let mut points = self.points.clone();
+            for k in 0..points.rows() {
+                conditioning.apply(&mut points, k, &targets);
+            }
+            for j in 0..points.columns() {
+                law(j).from_standard_normal_column(points.column(j), inputs.column_mut(j));
+            }
+        }
+        for &(j, value) in known {
+            inputs.column_mut(j).fill(value);
+        }
+        Ok(())
+    }
+
+    fn rows_of_correlation(&self, copula: &crate::uncertainty::Copula) -> Vec<Vec<f64>> {
+        let n = copula.dimension();
+        let row = |i| (0..n).map(|j| copula.normal_correlation(i, j)).collect();
+        (0..n).map(row).collect()
+    }
+
+    /// Draws in which row `k` keeps the inputs `given` of row `of(k)` of this sample and takes the others
+    /// from `others`' row `k`, by their laws given those.
+    ///
+    /// # Errors
+    /// If the copula cannot be conditioned so.
+    pub fn mixed(
+        &self,
+        given: &[usize],
+        of: impl Fn(usize) -> usize,
+        others: &CommonSample<'_>,
+    ) -> Result<Columns> {
+        let mut inputs = others.inputs.clone();
+        if let Some(copula) = self.study.joint.copula() {
+            let conditioning = Conditioning::new(self.rows_of_correlation(copula), given)?;
+            let mut points = others.points.clone();
+            for k in 0..points.rows() {
+                let targets: Vec<f64> = given.iter().map(|&j| self.points.get(of(k), j)).collect();
+                conditioning.apply(&mut points, k, &targets);
+            }
+            for j in 0..points.columns() {
+                let marginal = &self.study.inputs[j].marginal;
+                marginal.from_standard_normal_column(points.column(j), inputs.column_mut(j));
+            }
+        }
+        for &j in given {
+            let column = self.inputs.column(j);
+            for (k, value) in inputs.column_mut(j).iter_mut().enumerate() {
+                *value = column[of(k)];
+            }
+        }
+        Ok(inputs)
+    }
+
+    /// The breaches at draws of the study.
+    pub fn at(&self, inputs: &Columns, progress: &Progress) -> Breaches {
+        Breaches::of(self.study, &Ensemble::new(self.study).at_inputs(inputs, progress))
+    }
+}

@@ -1,0 +1,128 @@
+//! Where in the plane of the two strongest inputs a breach happens.
+
+use crate::campaign::{self, Record};
+use crate::error::Result;
+use crate::findings::drivers::{DriverOutput, DriversFinding};
+use crate::numerics::columns::Columns;
+use crate::study::Study;
+use serde::Serialize;
+
+/// Samples shown: the first of the run.
+const SHOWN: u64 = 2000;
+/// Breaches wanted among them; if there are fewer, later ones of the run are added.
+const WANTED: usize = 100;
+
+/// A thinned sample in the plane of two inputs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Interaction {
+    /// The output whose drivers were ranked, in words.
+    pub output: String,
+    /// The strongest input.
+    pub x: InteractionInput,
+    /// The next.
+    pub y: InteractionInput,
+    /// Whether each sample breached any limit.
+    pub breached: Vec<bool>,
+    /// How many of them, the last ones, are breaches of later samples, added because they are rare.
+    pub added: usize,
+}
+
+/// One input of each sample shown.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct InteractionInput {
+    /// Path, or name of the statement whose inputs are averaged.
+    pub path: String,
+    /// How many inputs are averaged.
+    pub inputs: usize,
+    /// Values, SI.
+    pub values: Vec<f64>,
+}
+
+/// The sample, or why there is none.
+pub(super) fn interaction(
+    study: &Study,
+    record: &Record,
+    drivers: &DriversFinding,
+) -> Result<std::result::Result<Interaction, String>> {
+    if let Some(why) = &drivers.none {
+        return Ok(Err(format!("no inputs are ranked: {why}")));
+    }
+    if study.limits.is_empty() {
+        return Ok(Err("the study states no limit".to_owned()));
+    }
+    let Some((output, [first, second])) = strongest(study, drivers) else {
+        return Ok(Err("no two inputs have a sensitivity index".to_owned()));
+    };
+    let factors = campaign::factors(study);
+    let columns_of = |name: &str| factors.iter().find(|factor| factor.name == name);
+    let (Some(x), Some(y)) = (columns_of(first), columns_of(second)) else {
+        return Ok(Err("no two inputs have a sensitivity index".to_owned()));
+    };
+    let total = record.margins(0).len();
+    let breached = |k: usize| (0..study.limits.len()).any(|i| record.margins(i)[k] < 0.0);
+    let known = |k: usize| (0..study.limits.len()).all(|i| !record.margins(i)[k].is_nan());
+    let shown = total.min(SHOWN as usize);
+    let mut chosen: Vec<usize> = (0..shown).filter(|&k| breached(k) || known(k)).collect();
+    let seen = chosen.iter().filter(|&&k| breached(k)).count();
+    let missing = WANTED.saturating_sub(seen);
+    let rest: Vec<usize> = (shown..total).filter(|&k| breached(k)).take(missing).collect();
+    let added = rest.len();
+    chosen.extend(rest);
+    let draws = draws(study, &chosen)?;
+    let input = |name: &str, columns: &[usize]| InteractionInput {
+        path: name.trim_end_matches(" (all)").to_owned(),
+        inputs: columns.len(),
+        values: (0..chosen.len())
+            .map(|k| columns.iter().map(|&j| draws.get(k, j)).sum::<f64>() / columns.len() as f64)
+            .collect(),
+    };
+    Ok(Ok(Interaction {
+        output: output.title.clone(),
+        x: input(first, &x.columns),
+        y: input(second, &y.columns),
+        breached: chosen.iter().map(|&k| breached(k)).collect(),
+        added,
+    }))
+}
+
+/// The first output with two ranked factors: any breach, then the limited outcomes; with the two.
+fn strongest<'a>(
+    study: &Study,
+    drivers: &'a DriversFinding,
+) -> Option<(&'a DriverOutput, [&'a str; 2])> {
+    let limited = study.limits.iter().map(|limit| limit.outcome.name());
+    std::iter::once("breach.any").chain(limited).find_map(|name| {
+        let output = drivers.outputs.iter().find(|output| output.name == name)?;
+        let mut factors: Vec<(f64, &str)> = output
+            .factors
+            .iter()
+            .filter(|factor| !factor.grouped)
+            .filter_map(|factor| Some((factor.indices.total.value?, factor.name.as_str())))
+            .collect();
+        factors.sort_by(|a, b| b.0.total_cmp(&a.0));
+        match factors.as_slice() {
+            [(_, first), (_, second), ..] => Some((output, [*first, *second])),
+            _ => None,
+        }
+    })
+}
+
+/// The inputs of these samples again: a sample is a function of its index.
+fn draws(study: &Study, chosen: &[usize]) -> Result<Columns> {
+    let sampler = campaign::sampler(study)?;
+    let dimension = sampler.dimension();
+    let mut points = Columns::new(chosen.len(), dimension);
+    let mut start = 0;
+    while start < chosen.len() {
+        let run = chosen[start..].windows(2).take_while(|pair| pair[1] == pair[0] + 1).count() + 1;
+        let mut block = Columns::new(run, dimension);
+        sampler.fill(chosen[start] as u64, &mut block)?;
+        for j in 0..dimension {
+            points.column_mut(j)[start..start + run].copy_from_slice(block.column(j));
+        }
+        start += run;
+    }
+    let mut draws = Columns::new(chosen.len(), dimension);
+    study.joint.from_uniform(&points, &mut draws);
+    Ok(draws)
+}
