@@ -5,11 +5,9 @@
 //! `reports/certificates/coverage.md` and `coverage.csv`. Seeds are 0, 1, …: the same table every time.
 
 #[path = "../tests/truth/benchmarks/mod.rs"]
-#[allow(dead_code)]
 mod benchmarks;
 
-use benchmarks::coverage::{Coverage, METHODS};
-use std::fmt::Write as _;
+use benchmarks::coverage::{CSV_HEADER, Coverage, METHODS};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -54,7 +52,7 @@ fn run(arguments: &Arguments) -> Result<(), String> {
             if name.contains(&arguments.only) {
                 eprintln!("{name}");
                 let row = Coverage::measure(method, &benchmark, arguments.seeds, 1.0);
-                rows.push((row, benchmark.probability));
+                rows.push(row);
             }
         }
     }
@@ -68,7 +66,7 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     Ok(())
 }
 
-fn markdown(rows: &[(Coverage, f64)], seeds: u64) -> String {
+fn markdown(rows: &[Coverage], seeds: u64) -> String {
     let mut text = format!(
         "# Coverage certificate\n\n\
         How often the 95 % interval of each method holds the certified probability, over {seeds} seeds \
@@ -78,59 +76,29 @@ fn markdown(rows: &[(Coverage, f64)], seeds: u64) -> String {
         env!("CARGO_PKG_VERSION")
     );
     for method in METHODS {
-        let own: Vec<_> = rows.iter().filter(|(row, _)| row.method == method).collect();
+        let own: Vec<&Coverage> = rows.iter().filter(|row| row.method == method).collect();
         if own.is_empty() {
             continue;
         }
-        // Writing to a String cannot fail.
-        let _ = write!(
-            text,
+        text.push_str(&format!(
             "\n## {}\n\n| problem | probability | mean estimate / truth | rms relative error | \
             evaluations | stated | coverage | below / above | verdict |\n\
             | --- | --: | --: | --: | --: | --: | --: | --: | --- |\n",
             method.name()
-        );
-        for (row, probability) in own {
-            let number = |x: Option<f64>| x.map_or("none".to_owned(), |x| format!("{x:.4}"));
-            let coverage = row.share().map_or("none".to_owned(), |(share, error)| {
-                format!("{:.1} ± {:.1} %", 100.0 * share, 100.0 * error)
-            });
-            let _ = writeln!(
-                text,
-                "| {} | {probability:.4e} | {} | {} | {:.0} | {} | {coverage} | {} / {} | {} |",
-                row.problem,
-                number(row.ratio),
-                number(row.relative_error),
-                row.evaluations,
-                row.stated,
-                row.below,
-                row.stated - row.held - row.below,
-                row.verdict()
-            );
+        ));
+        for row in own {
+            text.push_str(&row.markdown());
+            text.push('\n');
         }
     }
     text
 }
 
-fn csv(rows: &[(Coverage, f64)]) -> String {
-    let mut text = String::from(
-        "method,problem,probability,seeds,stated,held,below,mean_ratio,rms_relative_error,evaluations\n",
-    );
-    for (row, probability) in rows {
-        let number = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x}"));
-        let _ = writeln!(
-            text,
-            "{},{},{probability},{},{},{},{},{},{},{}",
-            row.method.name(),
-            row.problem,
-            row.seeds,
-            row.stated,
-            row.held,
-            row.below,
-            number(row.ratio),
-            number(row.relative_error),
-            row.evaluations
-        );
+fn csv(rows: &[Coverage]) -> String {
+    let mut text = format!("{CSV_HEADER}\n");
+    for row in rows {
+        text.push_str(&row.csv());
+        text.push('\n');
     }
     text
 }

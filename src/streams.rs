@@ -38,6 +38,12 @@ pub enum Purpose {
     Permutation,
     /// A run that confirms another.
     Confirmation,
+    /// Continuations of what is already known.
+    Known,
+    /// Random orders and points of the Shapley effects.
+    Shapley,
+    /// Trajectories of a screening.
+    Screening,
     /// Tests and benchmarks.
     Test,
 }
@@ -58,6 +64,9 @@ impl Purpose {
             Purpose::DesignPoint => b"designpt",
             Purpose::Permutation => b"permutat",
             Purpose::Confirmation => b"confirmn",
+            Purpose::Known => b"knownval",
+            Purpose::Shapley => b"shapley ",
+            Purpose::Screening => b"screenng",
             Purpose::Test => b"test    ",
         }
     }

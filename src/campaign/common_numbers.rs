@@ -16,6 +16,7 @@ use crate::sensitivity::conditional_normal::Conditioning;
 use crate::streams::Purpose;
 use crate::study::Study;
 use crate::uncertainty::Marginal;
+use std::ops::Range;
 
 /// What a variant changes in a study.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -191,23 +192,24 @@ impl<'a> CommonSample<'a> {
         let sampler = sampler(study)?;
         let replicates = u64::from(sampler.replicates());
         let rows = (rows.min(sampler.samples()) / replicates).max(1) * replicates;
-        Self::drawn(study, &sampler, rows)
+        Self::drawn(study, &sampler, 0..rows)
     }
 
-    /// `rows` independent points for a purpose.
+    /// Independent points of a purpose's stream, by their indices.
     ///
     /// # Errors
     /// If nothing is uncertain.
-    pub fn independent(study: &'a Study, rows: u64, purpose: Purpose) -> Result<Self> {
+    pub fn independent(study: &'a Study, rows: Range<u64>, purpose: Purpose) -> Result<Self> {
         let seed = study.sampling.seed;
         let dimension = study.joint.dimension();
-        let sampler = Sampler::new(Design::MonteCarlo, dimension, rows, 1, seed, purpose)?;
+        let sampler = Sampler::new(Design::MonteCarlo, dimension, rows.end, 1, seed, purpose)?;
         Self::drawn(study, &sampler, rows)
     }
 
-    fn drawn(study: &'a Study, sampler: &Sampler, rows: u64) -> Result<Self> {
-        let mut uniforms = Columns::new(rows as usize, study.joint.dimension());
-        sampler.fill(0, &mut uniforms)?;
+    fn drawn(study: &'a Study, sampler: &Sampler, rows: Range<u64>) -> Result<Self> {
+        let count = rows.end.saturating_sub(rows.start) as usize;
+        let mut uniforms = Columns::new(count, study.joint.dimension());
+        sampler.fill(rows.start, &mut uniforms)?;
         let points = match study.joint.copula() {
             None => uniforms,
             Some(copula) => {

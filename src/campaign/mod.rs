@@ -6,10 +6,15 @@
 
 pub mod common_numbers;
 mod evaluate;
+pub mod known;
 mod limit_state;
+mod looks;
 mod pick_freeze;
 mod rare;
 mod record;
+pub mod scores;
+pub mod shapley;
+pub mod tighten;
 pub mod trade;
 mod verification;
 
@@ -23,6 +28,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 pub use evaluate::{Ensemble, nominal};
 pub use limit_state::DescentLimitState;
+pub use looks::{Looks, RowGroups};
 pub use pick_freeze::{CORRELATED, PickFreezeOutcomes, factors, run_pick_freeze};
 pub use rare::{FEW_BREACHES, RareEvent, rare_events};
 pub use record::{FaultedSample, OutcomeSummary, Record};
@@ -87,16 +93,30 @@ pub fn run(
     progress: &Progress,
     sink: &mut (dyn FnMut(OutcomeTable) -> Result<()> + Send),
 ) -> Result<u64> {
+    run_until(study, &mut Looks::fixed(range), progress, sink)
+}
+
+/// Computes the samples that `looks` still wants, as [`run`] does; a table ends at a row group's end or
+/// at a look.
+///
+/// # Errors
+/// What [`sampler`] refuses, and whatever `sink` returns.
+pub fn run_until(
+    study: &Study,
+    looks: &mut Looks,
+    progress: &Progress,
+    sink: &mut (dyn FnMut(OutcomeTable) -> Result<()> + Send),
+) -> Result<u64> {
     let sampler = sampler(study)?;
     let ensemble = Ensemble::new(study);
     let (sender, receiver) = std::sync::mpsc::sync_channel::<OutcomeTable>(1);
     std::thread::scope(|scope| {
         let writer = scope.spawn(move || receiver.into_iter().try_for_each(sink));
-        let mut next = range.start;
-        while next < range.end && !progress.stopping() {
-            let end = ((next / ROW_GROUP + 1) * ROW_GROUP).min(range.end);
+        while !looks.over() && !progress.stopping() {
+            let next = looks.taken();
+            let end = ((next / ROW_GROUP + 1) * ROW_GROUP).min(looks.next());
             let table = ensemble.samples(&sampler, next..end, progress)?;
-            next += table.rows() as u64;
+            looks.take(&table)?;
             // A receiver that is gone has failed: its error is returned below.
             if table.rows() > 0 && sender.send(table).is_err() {
                 break;
@@ -104,7 +124,7 @@ pub fn run(
         }
         drop(sender);
         match writer.join() {
-            Ok(result) => result.map(|()| next),
+            Ok(result) => result.map(|()| looks.taken()),
             Err(panic) => std::panic::resume_unwind(panic),
         }
     })

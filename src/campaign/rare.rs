@@ -3,6 +3,7 @@
 use super::{DescentLimitState, Progress, Record};
 use crate::error::Result;
 use crate::reliability::agreement::{Agreement, agreement};
+use crate::reliability::confidence_sequence::confidence_sequence;
 use crate::reliability::cross_entropy::{CrossEntropyOptions, cross_entropy};
 use crate::reliability::crude;
 use crate::reliability::design_point::{DesignPoint, DesignPoints, SearchOptions};
@@ -88,8 +89,14 @@ fn rare_event(
             _ => Some(record.counts().any()),
         };
         let confidence = ImportanceOptions::default().confidence;
-        let crude = seen.map(|seen| crude::from_counts(event, seen, confidence));
-        estimates.extend(crude.transpose()?);
+        if let Some(seen) = seen {
+            let mut crude = crude::from_counts(event, seen, confidence)?;
+            if study.sampling.stopping.is_some() {
+                // How many samples there are depends on what they show.
+                crude.interval = confidence_sequence(seen, confidence)?;
+            }
+            estimates.push(crude);
+        }
     }
     for &method in methods {
         match method {

@@ -2,13 +2,12 @@
 //! sample with common random numbers; and the sums that its derivatives are made from.
 
 use super::common_numbers::{Breaches, Change, CommonSample, Event};
-use super::{Progress, Record, factors, in_parallel, sampler};
+use super::scores::{FactorScores, scores};
+use super::{Progress, Record, factors};
 use crate::error::Result;
-use crate::numerics::columns::Columns;
 use crate::sensitivity::pick_freeze::Factor;
-use crate::sensitivity::score_sums::ScoreSums;
 use crate::study::{DesignRange, Study};
-use crate::uncertainty::{Law, Marginal};
+use crate::uncertainty::Marginal;
 
 /// Spread factors of a curve; 1, the card's own, is the base.
 pub const SPREADS: [f64; 6] = [0.0, 0.25, 0.5, 0.75, 1.25, 1.5];
@@ -20,8 +19,6 @@ const HEADLINE: u64 = 5;
 pub const HEADLINES: usize = 3;
 /// Half the step of a central difference, in standard deviations.
 const STEP: f64 = 0.1;
-/// Samples in a piece of the score sums.
-const PIECE: u64 = 4096;
 /// Settings of a design value in a sweep.
 const SWEEP: usize = 13;
 
@@ -91,17 +88,6 @@ pub struct CentralDifference {
     pub breaches: (Breaches, Breaches),
 }
 
-/// Sums behind the derivatives of one factor's parameter.
-#[derive(Debug, Clone)]
-pub struct FactorScores {
-    /// Which factor.
-    pub factor: usize,
-    /// Which parameter.
-    pub parameter: Parameter,
-    /// One a limit, then one of any limit; or why there are none.
-    pub sums: std::result::Result<Vec<ScoreSums>, String>,
-}
-
 /// A headline: the spread of a factor halved, on the larger sample.
 #[derive(Debug, Clone)]
 pub struct Halved {
@@ -120,6 +106,17 @@ pub struct Sweep {
     pub coarse: Vec<Setting>,
     /// See `coarse`.
     pub fine: Vec<Setting>,
+}
+
+/// The spread of every factor halved where the design values are at their best.
+#[derive(Debug, Clone)]
+pub struct AtBest {
+    /// The design values, SI, in the order of the sweeps.
+    pub design: Vec<f64>,
+    /// The breaches there.
+    pub base: Breaches,
+    /// The breaches there with the spread of each factor halved.
+    pub halved: Vec<Halved>,
 }
 
 /// Everything that the trade is told from.
@@ -145,6 +142,8 @@ pub struct TradeOutcomes<'a> {
     pub differences: Vec<CentralDifference>,
     /// Sweeps of the design values that may move.
     pub sweeps: Vec<Sweep>,
+    /// The tightenings where the design is at its best; `None` if nothing may move.
+    pub at_best: Option<AtBest>,
 }
 
 /// Descents that the trade of a study takes, about.
@@ -153,7 +152,7 @@ pub fn trade_descents(study: &Study) -> u64 {
     let rows = study.trade.samples.min(study.sampling.samples);
     let curves = factors * (SPREADS.len() + SHIFTS.len()) as u64;
     let headline = (HEADLINE * study.trade.samples).min(study.sampling.samples);
-    let sweeps = study.tighten.design.len() as u64 * (2 * SWEEP as u64);
+    let sweeps = study.tighten.design.len() as u64 * (2 * SWEEP as u64) + factors + 1;
     rows * (1 + curves + sweeps) + headline * 5 * HEADLINES as u64
 }
 
@@ -170,10 +169,14 @@ pub fn run_trade<'a>(
     if study.trade.samples == 0 || study.limits.is_empty() {
         return Ok(None);
     }
-    let sample = CommonSample::of_run(study, study.trade.samples)?;
+    let available = record.counts().samples();
+    let sample = CommonSample::of_run(study, study.trade.samples.min(available))?;
     let factors = trade_factors(study);
-    let of_run =
-        |rows: usize| Breaches::from_margins(study.limits.len(), rows, |i, k| record.margins(i)[k]);
+    let of_run = |rows: usize| {
+        Breaches::from_margins(study.limits.len(), rows, |i, k| {
+            record.margins(i).get(k).copied().unwrap_or(f64::NAN)
+        })
+    };
     let base = of_run(sample.rows());
     let mut curves = Vec::new();
     for (f, factor) in factors.iter().enumerate() {
@@ -184,7 +187,7 @@ pub fn run_trade<'a>(
             curves.push(curve(&sample, f, &factor.columns, parameter, progress)?);
         }
     }
-    let headline = CommonSample::of_run(study, HEADLINE * study.trade.samples)?;
+    let headline = CommonSample::of_run(study, (HEADLINE * study.trade.samples).min(available))?;
     let headline_base = of_run(headline.rows());
     let mut halved = Vec::new();
     let mut differences = Vec::new();
@@ -204,6 +207,10 @@ pub fn run_trade<'a>(
         }
         sweeps.push(sweep(&sample, range, progress)?);
     }
+    let at_best = match sweeps.is_empty() {
+        true => None,
+        false => Some(at_best(&sample, &factors, &sweeps, progress)?),
+    };
     let replicates = headline.replicates();
     let scores = scores(study, record, &factors)?;
     Ok(Some(TradeOutcomes {
@@ -217,6 +224,7 @@ pub fn run_trade<'a>(
         scores,
         differences,
         sweeps,
+        at_best,
     }))
 }
 
@@ -236,13 +244,11 @@ fn curve(
     let mut settings = Vec::with_capacity(values.len());
     for value in values {
         let change = match parameter {
-            Parameter::Spread => Change::spread(study, columns, value)?,
-            Parameter::Mean => match Change::shift(study, columns, value) {
-                Ok(change) => change,
-                // A lognormal law of great spread has no room below.
-                Err(_) => continue,
-            },
+            Parameter::Spread => Change::spread(study, columns, value),
+            Parameter::Mean => Change::shift(study, columns, value),
         };
+        // Not every law has room: a lognormal law of great spread has none below.
+        let Ok(change) = change else { continue };
         let breaches = sample.changed(&change, progress)?;
         settings.push(Setting { value, breaches, marginals: change.marginals });
     }
@@ -318,133 +324,29 @@ fn sweep(sample: &CommonSample<'_>, range: &DesignRange, progress: &Progress) ->
     Ok(Sweep { range: range.clone(), coarse, fine })
 }
 
-/// Why a law's score does not give the derivative, if so.
-fn without_score(study: &Study, columns: &[usize]) -> Option<String> {
-    if !study.joint.is_independent() {
-        return Some(
-            "the inputs are correlated: see the difference by common random numbers".into(),
-        );
+/// Every factor's spread halved at the best settings of the sweeps.
+fn at_best(
+    sample: &CommonSample<'_>,
+    factors: &[Factor],
+    sweeps: &[Sweep],
+    progress: &Progress,
+) -> Result<AtBest> {
+    let mut design = Vec::with_capacity(sweeps.len());
+    let mut there = Change::default();
+    for sweep in sweeps {
+        let best = sweep
+            .fine
+            .iter()
+            .min_by(|a, b| a.breaches.worst_share().total_cmp(&b.breaches.worst_share()))
+            .map_or(sweep.range.lower, |setting| setting.value);
+        design.push(best);
+        there = there.and_design(sweep.range.target, best);
     }
-    let ended = |&j: &usize| {
-        let law = study.inputs[j].marginal.law();
-        !matches!(law, Law::Normal { .. } | Law::Lognormal { .. } | Law::Gumbel { .. })
-    };
-    columns.iter().any(ended).then(|| {
-        "the law has an end of its own that moves with its parameter, which a score cannot see"
-            .into()
-    })
-}
-
-/// The score sums of every factor over all samples of the run, whose draws are computed again.
-fn scores(study: &Study, record: &Record, factors: &[Factor]) -> Result<Vec<FactorScores>> {
-    let sampler = sampler(study)?;
-    let samples = record.counts().samples();
-    let events: Vec<Event> =
-        (0..study.limits.len()).map(Event::Limit).chain([Event::Any]).collect();
-    let parameters = [Parameter::Spread, Parameter::Mean];
-    let reasons: Vec<Option<String>> =
-        factors.iter().map(|factor| without_score(study, &factor.columns)).collect();
-    let pieces: Vec<u64> = (0..samples).step_by(PIECE as usize).collect();
-    let sums = in_parallel(&pieces, |&first| -> Result<Vec<ScoreSums>> {
-        let rows = (samples - first).min(PIECE) as usize;
-        let mut uniforms = Columns::new(rows, study.inputs.len());
-        sampler.fill(first, &mut uniforms)?;
-        let mut inputs = Columns::default();
-        study.joint.from_uniform(&uniforms, &mut inputs);
-        let breaches = Breaches::from_margins(study.limits.len(), rows, |i, k| {
-            record.margins(i)[first as usize + k]
-        });
-        let mut sums = vec![ScoreSums::default(); factors.len() * 2 * events.len()];
-        let mut places = sums.chunks_mut(events.len());
-        for (factor, reason) in factors.iter().zip(&reasons) {
-            for parameter in parameters {
-                let Some(place) = places.next() else { continue };
-                if reason.is_some() {
-                    continue;
-                }
-                let scales: Vec<Scorer> = factor
-                    .columns
-                    .iter()
-                    .map(|&j| Scorer::new(&study.inputs[j].marginal, parameter))
-                    .collect();
-                for k in 0..rows {
-                    // A common parameter of independent inputs: the scores add up.
-                    let members = factor.columns.iter().zip(&scales);
-                    let score = members.map(|(&j, s)| s.score(inputs.get(k, j))).sum();
-                    for (sum, &event) in place.iter_mut().zip(&events) {
-                        sum.push(breaches.happened(event, k), score);
-                    }
-                }
-            }
-        }
-        Ok(sums)
-    });
-    let mut total = vec![ScoreSums::default(); factors.len() * 2 * events.len()];
-    for piece in sums {
-        total.iter_mut().zip(&piece?).for_each(|(total, piece)| total.add(piece));
+    let base = sample.changed(&there, progress)?;
+    let mut halved = Vec::with_capacity(factors.len());
+    for (factor, found) in factors.iter().enumerate() {
+        let change = there.clone().and_spread(sample.study(), &found.columns, 0.5)?;
+        halved.push(Halved { factor, breaches: sample.changed(&change, progress)? });
     }
-    let mut places = total.chunks(events.len());
-    let mut found = Vec::with_capacity(2 * factors.len());
-    for (factor, reason) in reasons.iter().enumerate() {
-        for parameter in parameters {
-            let sums = places.next().unwrap_or_default().to_vec();
-            let sums = reason.clone().map_or(Ok(sums), Err);
-            found.push(FactorScores { factor, parameter, sums });
-        }
-    }
-    Ok(found)
-}
-
-/// The score of a marginal as a polynomial of its standardised value, where it is one; the truncation's
-/// share is found once instead of at every sample.
-enum Scorer<'a> {
-    /// Score at two values tells a straight line in z, at three a parabola.
-    Parabola {
-        marginal: &'a Marginal,
-        a: f64,
-        b: f64,
-        c: f64,
-    },
-    Direct(&'a Marginal, Parameter),
-}
-
-impl<'a> Scorer<'a> {
-    fn new(marginal: &'a Marginal, parameter: Parameter) -> Self {
-        let direct = |x: f64| match parameter {
-            Parameter::Mean => marginal.score_mean(x),
-            Parameter::Spread => marginal.score_spread(x),
-        };
-        let at = |z: f64| -> f64 {
-            match *marginal.law() {
-                Law::Lognormal { log_mean, log_sd } => {
-                    direct(crate::numerics::elementary::exp(log_mean + log_sd * z))
-                }
-                _ => direct(marginal.law().mean() + marginal.law().sd() * z),
-            }
-        };
-        match marginal.law() {
-            Law::Normal { .. } | Law::Lognormal { .. } => {
-                let (low, mid, high) = (at(-1.0), at(0.0), at(1.0));
-                let a = 0.5 * (low + high) - mid;
-                Scorer::Parabola { marginal, a, b: 0.5 * (high - low), c: mid }
-            }
-            _ => Scorer::Direct(marginal, parameter),
-        }
-    }
-
-    fn score(&self, x: f64) -> f64 {
-        match self {
-            Scorer::Parabola { marginal, a, b, c } => {
-                let z = match *marginal.law() {
-                    Law::Lognormal { log_mean, log_sd } => {
-                        (crate::numerics::elementary::ln(x) - log_mean) / log_sd
-                    }
-                    ref law => (x - law.mean()) / law.sd(),
-                };
-                (a * z + b) * z + c
-            }
-            Scorer::Direct(marginal, Parameter::Mean) => marginal.score_mean(x),
-            Scorer::Direct(marginal, Parameter::Spread) => marginal.score_spread(x),
-        }
-    }
+    Ok(AtBest { design, base, halved })
 }

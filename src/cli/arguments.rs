@@ -26,6 +26,8 @@ pub(super) enum Command {
     Run(RunArguments),
     /// Compute one nominal descent and show its outcomes
     Descend(DescendArguments),
+    /// Find the cheapest tightenings and design change that meet a target, and confirm them
+    Tighten(TightenArguments),
     /// Compute one sample of a run again, and compare it bit for bit
     Replay(ReplayArguments),
     /// Validate a study and show every resolved input with its unit and source
@@ -69,7 +71,7 @@ pub(super) struct StudyArguments {
 pub(super) struct RunArguments {
     #[command(flatten)]
     pub study: StudyArguments,
-    /// Number of samples, in place of the study's
+    /// Number of samples, in place of the study's; the budget of a study that samples until something
     #[arg(long, value_name = "N")]
     pub samples: Option<String>,
     /// Seed of every random stream, in place of the study's
@@ -103,6 +105,24 @@ pub(super) struct DescendArguments {
     #[arg(long, value_name = "FILE.parquet")]
     pub trace: Option<PathBuf>,
     /// Print the outcomes as one JSON object in SI, and nothing else, on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct TightenArguments {
+    #[command(flatten)]
+    pub study: StudyArguments,
+    /// Largest acceptable probability of any breach, in place of the study's: 0.01 or "1 %"
+    #[arg(long, value_name = "P")]
+    pub target: Option<String>,
+    /// Directory for tighten.json and tighten.md
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Number of threads [default: one a core]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Print the findings as one JSON object in SI, and nothing else, on standard output
     #[arg(long)]
     pub json: bool,
 }

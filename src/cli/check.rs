@@ -3,6 +3,7 @@
 use super::arguments::CheckArguments;
 use super::{Ending, done};
 use crate::error::Result;
+use crate::reliability::adaptive::Until;
 use crate::render::table;
 use crate::study::Study;
 
@@ -38,13 +39,21 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<Ending> {
     }
     let plan = &study.sampling;
     text += &format!(
-        "sampling: {}, {} samples, seed {}\nmodel: {}\ndigest: {}\n",
+        "sampling: {}, {}{} samples, seed {}\nmodel: {}\ndigest: {}\n",
         plan.design.name(),
+        if plan.stopping.is_some() { "at most " } else { "" },
         plan.samples,
         plan.seed,
         study.model.name(),
         study.digest()
     );
+    if let Some(stopping) = plan.stopping {
+        let until = match stopping.until {
+            Until::RelativeError(error) => format!("the relative error is at most {error}"),
+            Until::Decided { .. } => "the requirement is decided".to_owned(),
+        };
+        text += &format!("until: {until}, at confidence {}\n", stopping.confidence);
+    }
     for note in &study.notes {
         text += &format!("note: {note}\n");
     }
@@ -99,6 +108,8 @@ fn json(study: &Study) -> serde_json::Value {
             "samples": study.sampling.samples,
             "seed": study.sampling.seed,
             "replicates": study.sampling.replicates,
+            "until": study.sampling.stopping.map(|stopping| stopping.until),
+            "until_confidence": study.sampling.stopping.map(|stopping| stopping.confidence),
         },
         "study_digest": study.digest(),
         "notes": study.notes,

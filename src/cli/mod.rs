@@ -9,6 +9,8 @@ mod output;
 mod parentage;
 mod replay;
 mod run;
+mod tighten;
+mod trade_tables;
 mod watch;
 
 use crate::error::Result;
@@ -61,6 +63,7 @@ fn carry_out(arguments: Arguments) -> Result<Ending> {
         None => run::run(&arguments.run),
         Some(Command::Run(run)) => run::run(&run),
         Some(Command::Descend(descend)) => descend::descend(&descend),
+        Some(Command::Tighten(tighten)) => tighten::tighten(&tighten),
         Some(Command::Replay(replay)) => replay::replay(&replay),
         Some(Command::Check(check)) => check::check(&check),
         Some(Command::Schema { kind }) => describe::schema(kind),

@@ -44,7 +44,7 @@ pub(super) fn of(study: &Study) -> Parentage {
 }
 
 /// The digest of everything that fixes a row of the table: the resolved study without its requirement,
-/// its sensitivity and reliability plans and, for a design whose longer run begins with the shorter, its
+/// its stopping rule, its sensitivity, reliability and trade plans and, for a design whose longer run begins with the shorter, its
 /// number of samples.
 pub(super) fn row_digest(study: &Study) -> String {
     let mut rows = study.clone();
@@ -52,6 +52,14 @@ pub(super) fn row_digest(study: &Study) -> String {
     rows.sensitivity.base_samples = 0;
     rows.sensitivity.bootstrap = 0;
     rows.reliability = Default::default();
+    rows.trade.samples = 0;
+    rows.tighten.target = None;
+    rows.tighten.samples = 0;
+    rows.tighten.design.clear();
+    for input in &mut rows.inputs {
+        input.cost = Default::default();
+    }
+    rows.sampling.stopping = None;
     if rows.sampling.design != Design::LatinHypercube {
         rows.sampling.samples = 0;
     }

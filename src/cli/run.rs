@@ -2,9 +2,10 @@
 
 use super::arguments::RunArguments;
 use super::output::{say, say_error, stdout_style};
+use super::trade_tables::{TRADE, write_trade};
 use super::watch::{Watch, stop_on_interrupt};
 use super::{Ending, parentage, replay};
-use crate::campaign::{self, Progress, ROW_GROUP, Record};
+use crate::campaign::{self, Looks, Progress, ROW_GROUP, Record, RowGroups};
 use crate::error::{Error, Result};
 use crate::findings::{self, DriversFinding, Evidence, Findings, VerdictWord};
 use crate::numerics::interval::Estimate;
@@ -44,7 +45,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Ending> {
     let directory =
         arguments.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(arguments.study.name()));
     // What stands in the way is said now, not after the descents.
-    for name in [OUTCOMES, FINDINGS, REPORT, SENSITIVITY, PROVENANCE] {
+    for name in [OUTCOMES, FINDINGS, REPORT, SENSITIVITY, TRADE, PROVENANCE] {
         refuse_obstacle(&directory.join(name))?;
     }
     campaign::with_threads(arguments.threads.map(usize::from), || {
@@ -65,17 +66,17 @@ impl Run<'_> {
         let begun = Instant::now();
         let progress = Arc::new(Progress::default());
         stop_on_interrupt(&progress)?;
-        let (record, computed) = self.sample(&progress)?;
+        let (record, looks, computed) = self.sample(&progress)?;
         let sampled = begun.elapsed();
-        let samples = self.study.sampling.samples;
-        if record.counts().samples() < samples {
-            return Ok(self.interrupted(record.counts().samples()));
+        let samples = looks.taken();
+        if !looks.over() {
+            return Ok(self.interrupted(samples, false));
         }
         let pick_freeze = {
             let _watch = Watch::start(&progress, self.sensitivity_descents(), "sensitivity");
             match campaign::run_pick_freeze(self.study, &progress) {
                 Ok(Some(design)) => Ok(design),
-                Ok(None) if progress.stopping() => return Ok(self.interrupted(samples)),
+                Ok(None) if progress.stopping() => return Ok(self.interrupted(samples, true)),
                 Ok(None) => {
                     Err("the study asks for none (sensitivity.base_samples = 0)".to_owned())
                 }
@@ -84,68 +85,76 @@ impl Run<'_> {
         };
         let rare = campaign::rare_events(self.study, &record, &progress)?;
         if progress.stopping() {
-            return Ok(self.interrupted(samples));
+            return Ok(self.interrupted(samples, true));
+        }
+        let (shapley, trade, known) = {
+            let descents = campaign::shapley::shapley_descents(self.study)
+                + campaign::trade::trade_descents(self.study)
+                + campaign::known::known_descents(self.study);
+            let _watch = Watch::start(&progress, descents, "trade of tolerances");
+            (
+                campaign::shapley::run_shapley(self.study, &progress),
+                campaign::trade::run_trade(self.study, &record, &progress),
+                campaign::known::run_known(self.study, samples, &progress),
+            )
+        };
+        if progress.stopping() {
+            return Ok(self.interrupted(samples, true));
         }
         let findings = findings::gather(&Evidence {
             study: self.study,
             record: &record,
+            stop: looks.stop()?,
             rare,
             nominal: campaign::nominal(self.study),
             verification: campaign::verify(self.study, &record)?,
             pick_freeze,
+            shapley: or_reason(shapley, "the study asks for none (sensitivity.base_samples = 0)"),
+            trade: or_reason(trade, NO_TRADE),
+            known: or_reason(known, NO_TRADE),
             command: self.command(),
         })?;
         self.write(&findings)?;
-        self.write_provenance(begun.elapsed().as_secs_f64(), sampled.as_secs_f64(), computed)?;
+        let times = (begun.elapsed().as_secs_f64(), sampled.as_secs_f64());
+        self.write_provenance(times, computed, samples - computed)?;
         self.report(&findings)
     }
 
     /// Computes the samples that are not there yet and writes all of them.
-    fn sample(&self, progress: &Arc<Progress>) -> Result<(Record, u64)> {
+    fn sample(&self, progress: &Arc<Progress>) -> Result<(Record, Looks, u64)> {
         let path = self.directory.join(OUTCOMES);
-        let samples = self.study.sampling.samples;
+        let most = self.study.sampling.samples;
         let sampler = campaign::sampler(self.study)?;
-        let mut record = Record::new(self.study, sampler.replicates())?;
+        let mut looks = Looks::new(self.study)?;
         let before = if self.arguments.resume { self.earlier(&path)? } else { None };
-        let mut writer = OutcomesWriter::create(&path, self.study, &self.parentage)?;
-        let inputs = self.study.inputs.len();
-        let (mut start, mut unfinished) = (0, None);
+        let mut rows = Rows {
+            record: Record::new(self.study, sampler.replicates())?,
+            writer: OutcomesWriter::create(&path, self.study, &self.parentage)?,
+            groups: RowGroups::new(self.study.inputs.len()),
+        };
         if let Some(reader) = &before {
-            let kept = reader.rows().min(samples);
-            while start < kept {
-                let rows = (kept - start).min(ROW_GROUP);
-                let table = reader.read(self.study, start, rows as usize)?;
+            while looks.taken() < reader.rows() && !looks.over() {
+                let start = looks.taken();
+                let count = (reader.rows().min(most) - start).min(ROW_GROUP) as usize;
+                let table = reader.read(self.study, start, count)?;
                 self.verify(&path, &table)?;
-                start += rows;
-                if rows < ROW_GROUP && start < samples {
-                    // The row group goes on with the samples that are computed next.
-                    unfinished = Some(table);
+                let taken = looks.take(&table)?;
+                // A longer run, or one with another rule, has more rows than this study takes.
+                rows.push(if taken < count {
+                    reader.read(self.study, start, taken)?
                 } else {
-                    record.absorb(&table);
-                    writer.write(&table)?;
-                }
+                    table
+                })?;
             }
         }
+        let read = looks.taken();
         {
-            let _watch = Watch::start(progress, samples - start, "descents");
-            let mut sink = |table: OutcomeTable| {
-                let table = match unfinished.take() {
-                    Some(first) => OutcomeTable::joined(first.first, inputs, &[first, table]),
-                    None => table,
-                };
-                record.absorb(&table);
-                writer.write(&table)
-            };
-            campaign::run(self.study, start..samples, progress, &mut sink)?;
+            let _watch = Watch::start(progress, most - read, "descents");
+            let mut sink = |table: OutcomeTable| rows.push(table);
+            campaign::run_until(self.study, &mut looks, progress, &mut sink)?;
         }
-        if let Some(table) = unfinished {
-            // Stopped before the first new sample.
-            record.absorb(&table);
-            writer.write(&table)?;
-        }
-        writer.finish()?;
-        let computed = record.counts().samples() - start;
-        Ok((record, computed))
+        let computed = looks.taken() - read;
+        Ok((rows.finish()?, looks, computed))
     }
 
     /// Computes the last sample of a table that was read once more, and refuses a file that differs.
@@ -179,12 +188,13 @@ impl Run<'_> {
         Ok(Some(reader))
     }
 
-    fn interrupted(&self, computed: u64) -> Ending {
-        let samples = self.study.sampling.samples;
-        let when = if computed < samples {
-            format!("stopped after {computed} of {samples} samples")
+    fn interrupted(&self, computed: u64, all: bool) -> Ending {
+        let plan = &self.study.sampling;
+        let most = if plan.stopping.is_some() { "at most " } else { "" };
+        let when = if all {
+            format!("stopped after all {computed} samples, before the report")
         } else {
-            format!("stopped after all {samples} samples, before the report")
+            format!("stopped after {computed} of {most}{} samples", plan.samples)
         };
         say_error(&format!(
             "{when}; they are in {}\nto go on: {} --resume{}",
@@ -220,11 +230,13 @@ impl Run<'_> {
         let at = |name: &str| self.directory.join(name);
         write_text(&at(FINDINGS), &json(findings)?)?;
         write_text(&at(REPORT), &render::markdown(findings)?)?;
-        write_sensitivity(&at(SENSITIVITY), &findings.drivers, &self.parentage)
+        write_sensitivity(&at(SENSITIVITY), &findings.drivers, &self.parentage)?;
+        write_trade(&at(TRADE), findings, &self.parentage)
     }
 
     /// What may differ between two runs of the same study: kept out of everything else.
-    fn write_provenance(&self, seconds: f64, sampling: f64, computed: u64) -> Result<()> {
+    fn write_provenance(&self, times: (f64, f64), computed: u64, read: u64) -> Result<()> {
+        let (seconds, sampling) = times;
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |t| t.as_secs());
         let provenance = serde_json::json!({
             "version": env!("CARGO_PKG_VERSION"),
@@ -237,7 +249,7 @@ impl Run<'_> {
             "wall_time_s": seconds,
             "sampling_time_s": sampling,
             "samples_computed": computed,
-            "samples_read_again": self.study.sampling.samples - computed,
+            "samples_read_again": read,
             "study_digest": self.study.digest(),
         });
         write_text(&self.directory.join(PROVENANCE), &format!("{provenance:#}\n"))
@@ -258,6 +270,46 @@ impl Run<'_> {
     }
 }
 
+/// Where the samples of a run go, row group by row group.
+struct Rows {
+    record: Record,
+    writer: OutcomesWriter,
+    groups: RowGroups,
+}
+
+impl Rows {
+    fn push(&mut self, table: OutcomeTable) -> Result<()> {
+        match self.groups.push(table) {
+            Some(group) => self.keep(&group),
+            None => Ok(()),
+        }
+    }
+
+    fn keep(&mut self, group: &OutcomeTable) -> Result<()> {
+        self.record.absorb(group);
+        self.writer.write(group)
+    }
+
+    fn finish(mut self) -> Result<Record> {
+        if let Some(group) = self.groups.rest() {
+            self.keep(&group)?;
+        }
+        self.writer.finish()?;
+        Ok(self.record)
+    }
+}
+
+/// Why there is no trade of tolerances where a study has none.
+const NO_TRADE: &str = "the study asks for none (trade.samples = 0) or states no limit";
+
+/// What was computed, or why it was not.
+fn or_reason<T>(found: Result<Option<T>>, none: &str) -> std::result::Result<T, String> {
+    match found {
+        Ok(found) => found.ok_or_else(|| none.to_owned()),
+        Err(reason) => Err(reason.to_string()),
+    }
+}
+
 fn json(findings: &Findings) -> Result<String> {
     serde_json::to_string_pretty(findings)
         .map(|text| text + "\n")
@@ -265,7 +317,7 @@ fn json(findings: &Findings) -> Result<String> {
 }
 
 /// A word of a command line, quoted if the shell would take it apart.
-fn quoted(word: &str) -> String {
+pub(super) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         return word.to_owned();

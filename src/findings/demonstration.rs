@@ -1,13 +1,13 @@
 //! The verdict: is the requirement demonstrated?
 
-use super::CONFIDENCE;
+use super::{CONFIDENCE, sequence};
 use crate::campaign::Record;
 use crate::error::Result;
 use crate::numerics::interval::Earned;
 use crate::reliability::demonstration::{Demonstration, Requirement, Verdict, minimum_samples};
 use crate::reliability::probability::Proportion;
 use crate::reliability::replicates::from_replicate_counts;
-use crate::study::Study;
+use crate::study::{StoppingPlan, Study};
 use crate::units::number;
 use serde::Serialize;
 
@@ -37,6 +37,12 @@ pub enum Decision {
     /// The one-sided ends of Student's t over independent replicates.
     Replicates {
         /// Lower and upper bound of the probability of any breach, each at the requirement's confidence.
+        bounds: Earned,
+    },
+    /// The ends of a confidence sequence: the samples ended because of what was seen.
+    Sequence {
+        /// Lower and upper bound of the probability of any breach; at every look, and for the limits as
+        /// well, both hold together at the requirement's confidence.
         bounds: Earned,
     },
 }
@@ -81,7 +87,10 @@ pub(super) fn verdict(study: &Study, record: &Record) -> Result<VerdictFinding> 
         });
     };
     let requirement = Requirement::new(stated.reliability, stated.confidence)?;
-    let (word, decision, evidence) = if record.by_replicate().is_empty() {
+    let stopping = study.sampling.stopping;
+    let (word, decision, evidence) = if let Some(plan) = stopping {
+        by_sequence(study, &plan, &requirement, &counts)?
+    } else if record.by_replicate().is_empty() {
         by_counts(&requirement, &counts)?
     } else {
         by_replicates(&requirement, record)?
@@ -101,7 +110,9 @@ pub(super) fn verdict(study: &Study, record: &Record) -> Result<VerdictFinding> 
         }
         _ => format!("Undecided: {demand} is neither demonstrated nor refuted. {evidence}"),
     };
-    let failures_allowed = (0..TABLE_ROWS)
+    // The table is of tests whose size is fixed beforehand.
+    let rows = if stopping.is_some() { 0 } else { TABLE_ROWS };
+    let failures_allowed = (0..rows)
         .map(|failures| {
             minimum_samples(stated.reliability, stated.confidence, failures).map(|n| (failures, n))
         })
@@ -121,14 +132,20 @@ fn no_requirement(study: &Study, counts: &Proportion) -> Result<String> {
         return Ok("The study states no limit: there is nothing to breach.".to_owned());
     }
     let estimate = counts.estimate().map_or("unknown".to_owned(), percent);
-    let interval = counts.interval(CONFIDENCE)?;
+    let (interval, confidence) = match study.sampling.stopping {
+        Some(plan) => {
+            (sequence::together(study, &plan, *counts, plan.confidence)?, plan.confidence)
+        }
+        None => (counts.interval(CONFIDENCE)?, CONFIDENCE),
+    };
     let interval = match interval.interval() {
         Some(i) => format!("{} to {}", percent(i.lower), percent(i.upper)),
         None => "none".to_owned(),
     };
     Ok(format!(
         "The study states no requirement. Any limit is breached with probability {estimate} \
-         (95 % interval {interval})."
+         ({} interval {interval}).",
+        percent(confidence)
     ))
 }
 
@@ -142,15 +159,7 @@ fn by_counts(
         Verdict::NotMet => VerdictWord::NotMet,
         Verdict::Undecided => VerdictWord::Undecided,
     };
-    let seen = format!(
-        "{} of {} samples breached a limit{}",
-        counts.breaches,
-        counts.samples,
-        match counts.faults {
-            0 => String::new(),
-            faults => format!(" and {faults} could not be computed"),
-        }
-    );
+    let seen = seen(counts);
     let confidence = percent(requirement.confidence);
     let end = |earned: &Earned, upper: bool| {
         earned
@@ -172,6 +181,52 @@ fn by_counts(
         ),
     };
     Ok((word, Decision::Counts(Box::new(demonstration)), evidence))
+}
+
+/// "12 of 1000 samples breached a limit".
+fn seen(counts: &Proportion) -> String {
+    format!(
+        "{} of {} samples breached a limit{}",
+        counts.breaches,
+        counts.samples,
+        match counts.faults {
+            0 => String::new(),
+            faults => format!(" and {faults} could not be computed"),
+        }
+    )
+}
+
+/// Each end of a confidence sequence bounds the probability at every look, so also at the one at which
+/// sampling ended because of what was seen there.
+fn by_sequence(
+    study: &Study,
+    plan: &StoppingPlan,
+    requirement: &Requirement,
+    counts: &Proportion,
+) -> Result<(VerdictWord, Decision, String)> {
+    let limit = requirement.failure_limit();
+    let bounds = sequence::together(study, plan, *counts, requirement.confidence)?;
+    let confidence = percent(requirement.confidence);
+    let always = format!("with {confidence} confidence, however often it was looked at");
+    let seen = seen(counts);
+    let (word, evidence) = match &bounds {
+        Earned::Interval(i) if i.upper <= limit => {
+            let upper = percent(i.upper);
+            (VerdictWord::Met, format!("{seen}: the probability is at most {upper} {always}."))
+        }
+        Earned::Interval(i) if i.lower > limit => {
+            let lower = percent(i.lower);
+            (VerdictWord::NotMet, format!("{seen}: the probability is at least {lower} {always}."))
+        }
+        Earned::Interval(i) => {
+            let (lower, upper) = (percent(i.lower), percent(i.upper));
+            let evidence =
+                format!("{seen}: the probability lies between {lower} and {upper} {always}.");
+            (VerdictWord::Undecided, evidence)
+        }
+        Earned::None(why) => (VerdictWord::Undecided, format!("No interval: {why}.")),
+    };
+    Ok((word, Decision::Sequence { bounds }, evidence))
 }
 
 /// Two one-sided bounds at C are the ends of a two-sided interval at 2 C − 1.

@@ -51,6 +51,9 @@ pub(super) fn margins(study: &Study, record: &Record) -> Result<Vec<MarginFindin
                     _ if replicated => Earned::none(
                         "order statistics need independent samples, and this design's are not",
                     ),
+                    _ if study.sampling.stopping.is_some() => Earned::none(
+                        "order statistics need a number of samples that was fixed beforehand",
+                    ),
                     Earned::Interval(i) => {
                         Interval { lower: -i.upper, upper: -i.lower, ..i }.into()
                     }

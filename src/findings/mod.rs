@@ -2,16 +2,27 @@
 //! JSON holds. Numbers are SI; the renderer chooses units.
 
 mod demonstration;
+pub mod derivatives;
+pub mod design_value;
 mod drivers;
 mod inputs;
+pub mod known;
 mod margins;
 mod numerical;
 mod probabilities;
 mod rare;
+mod sequence;
+pub mod shapley;
+pub mod tighten;
+pub mod trade;
 
+use crate::campaign::known::KnownOutcomes;
+use crate::campaign::shapley::ShapleyOutcomes;
+use crate::campaign::trade::TradeOutcomes;
 use crate::campaign::{self, PickFreezeOutcomes, RareEvent, Record, Verification};
 use crate::descent::{Fault, Outcome, OutcomeQuantity};
 use crate::error::Result;
+use crate::reliability::adaptive::Stop;
 use crate::study::Study;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -19,10 +30,14 @@ use std::collections::BTreeMap;
 pub use demonstration::{Decision, VerdictFinding, VerdictWord};
 pub use drivers::{DriverOutput, DriversFinding, FactorFinding};
 pub use inputs::InputFinding;
+pub use known::KnownFinding;
 pub use margins::{MarginFinding, MarginQuantile};
 pub use numerical::{NumericalFinding, NumericalLimit};
 pub use probabilities::{EventKind, ProbabilityFinding};
 pub use rare::{DesignPointFinding, DesignPointInput, RareFinding};
+pub use sequence::StoppingFinding;
+pub use shapley::{BreachFinding, ShapleyFinding, ShapleyOutput};
+pub use trade::TradeFinding;
 
 /// Confidence of the two-sided intervals.
 pub const CONFIDENCE: f64 = 0.95;
@@ -36,6 +51,8 @@ pub struct Findings {
     pub title: String,
     /// The verdict, first.
     pub verdict: VerdictFinding,
+    /// Why the sampling ended where it did, if that was decided while sampling.
+    pub stopping: Option<StoppingFinding>,
     /// Each limit, any limit, each pair.
     pub probabilities: Vec<ProbabilityFinding>,
     /// Events too rare for the samples, by several methods.
@@ -48,6 +65,14 @@ pub struct Findings {
     pub nominal: NominalFinding,
     /// What drives the outcomes and the breaches.
     pub drivers: DriversFinding,
+    /// Every factor's fair share of the variance.
+    pub shapley: ShapleyFinding,
+    /// Where the breaches of each event lie.
+    pub breaches: Vec<BreachFinding>,
+    /// What buying down a tolerance is worth.
+    pub trade: TradeFinding,
+    /// What becomes known when, and what that settles.
+    pub known: KnownFinding,
     /// Samples that did not deploy or could not be computed.
     pub exceptions: ExceptionFinding,
     /// What is uncertain.
@@ -144,6 +169,8 @@ pub struct Evidence<'a> {
     pub study: &'a Study,
     /// Its samples.
     pub record: &'a Record,
+    /// Why its sampling ended, if that was decided while sampling.
+    pub stop: Option<Stop>,
     /// The events that the samples saw too rarely.
     pub rare: Vec<RareEvent>,
     /// Its nominal descent.
@@ -152,6 +179,12 @@ pub struct Evidence<'a> {
     pub verification: Verification,
     /// Its pick-freeze design, or why there is none.
     pub pick_freeze: std::result::Result<PickFreezeOutcomes, String>,
+    /// Its walks of the Shapley effects, or why there are none.
+    pub shapley: std::result::Result<ShapleyOutcomes, String>,
+    /// Its trade of tolerances, or why there is none.
+    pub trade: std::result::Result<TradeOutcomes<'a>, String>,
+    /// What becomes known when, or why that is not told.
+    pub known: std::result::Result<KnownOutcomes, String>,
     /// The command that was given, to be given again.
     pub command: String,
 }
@@ -162,17 +195,25 @@ pub struct Evidence<'a> {
 /// If the study's numbers are such that a statistic refuses them (a confidence of 1, say).
 pub fn gather(evidence: &Evidence) -> Result<Findings> {
     let Evidence { study, record, .. } = *evidence;
-    let sampler = campaign::sampler(study)?;
+    // What was drawn, which may be less than the budget.
+    let mut drawn = study.clone();
+    drawn.sampling.samples = record.counts().samples();
+    let sampler = campaign::sampler(&drawn)?;
     Ok(Findings {
         format: 1,
         title: study.title.clone(),
         verdict: demonstration::verdict(study, record)?,
+        stopping: sequence::stopping(study, record.counts().samples(), evidence.stop),
         probabilities: probabilities::probabilities(study, record)?,
         rare: rare::rare(study, &evidence.rare),
         margins: margins::margins(study, record)?,
         outcomes: OutcomeQuantity::ALL.map(|quantity| outcome(record, quantity)).to_vec(),
         nominal: nominal(study, &evidence.nominal),
         drivers: drivers::drivers(study, &evidence.pick_freeze)?,
+        shapley: shapley::shapley(study, &evidence.shapley)?,
+        breaches: shapley::breaches(study, &evidence.trade)?,
+        trade: trade::trade(study, &evidence.trade)?,
+        known: known::known(study, &evidence.known)?,
         exceptions: exceptions(record),
         inputs: inputs::inputs(study),
         numerical: numerical::numerical(study, record, &evidence.verification),
@@ -256,6 +297,7 @@ fn caveats(study: &Study, advice: Option<String>) -> Vec<String> {
                 .to_owned(),
         );
     }
+    caveats.extend(study.sampling.stopping.as_ref().map(sequence::caveat));
     caveats.extend(study.notes.iter().cloned());
     caveats.extend(advice);
     caveats

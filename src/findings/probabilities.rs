@@ -2,6 +2,7 @@
 
 use super::CONFIDENCE;
 use super::demonstration::percent;
+use super::sequence;
 use crate::campaign::Record;
 use crate::error::Result;
 use crate::numerics::interval::Earned;
@@ -93,7 +94,13 @@ fn finding(
     let Some(counts) = event(record.counts()) else { return Ok(None) };
     let one_sided = study.requirement.map_or(CONFIDENCE, |requirement| requirement.confidence);
     let replicates: Vec<Proportion> = record.by_replicate().iter().filter_map(&event).collect();
-    let (probability, interval, upper_bound) = if replicates.is_empty() {
+    let (probability, interval, upper_bound) = if let Some(plan) = study.sampling.stopping {
+        let at = |confidence: f64| match kind {
+            EventKind::Pair => sequence::alone(counts, confidence),
+            _ => sequence::together(study, &plan, counts, confidence),
+        };
+        (counts.estimate(), at(plan.confidence)?, sequence::upper_bound(at(one_sided)?))
+    } else if replicates.is_empty() {
         (counts.estimate(), counts.interval(CONFIDENCE)?, counts.upper_bound(one_sided)?)
     } else if replicates.iter().any(|count| count.samples == 0) {
         let none = || Earned::none("a replicate has no sample yet");
@@ -106,8 +113,11 @@ fn finding(
         };
         (estimate.value.or(counts.estimate()), estimate.interval, upper)
     };
-    let statement =
-        if replicates.is_empty() { few_breaches(study, &counts, one_sided)? } else { None };
+    let statement = if replicates.is_empty() {
+        few_breaches(study, &counts, &upper_bound, one_sided)?
+    } else {
+        None
+    };
     Ok(Some(ProbabilityFinding {
         kind,
         limits,
@@ -122,11 +132,15 @@ fn finding(
 }
 
 /// Zero or few breaches are an upper bound, and a number of clean samples that would lower it.
-fn few_breaches(study: &Study, counts: &Proportion, confidence: f64) -> Result<Option<String>> {
+fn few_breaches(
+    study: &Study,
+    counts: &Proportion,
+    bound: &Earned,
+    confidence: f64,
+) -> Result<Option<String>> {
     if counts.breaches >= FEW {
         return Ok(None);
     }
-    let bound = counts.upper_bound(confidence)?;
     let Some(upper) = bound.interval().map(|interval| interval.upper) else { return Ok(None) };
     let seen = match counts.breaches {
         0 => "no breach was seen".to_owned(),
@@ -136,6 +150,10 @@ fn few_breaches(study: &Study, counts: &Proportion, confidence: f64) -> Result<O
     let sure = percent(confidence);
     let mut statement =
         format!("{seen}: the probability is at most {} with {sure} confidence", percent(upper));
+    if study.sampling.stopping.is_some() {
+        // A number of further samples is a promise of a fixed size.
+        return Ok(Some(statement));
+    }
     let target = match study.requirement {
         Some(requirement) if upper > 1.0 - requirement.reliability => 1.0 - requirement.reliability,
         _ => upper / 10.0,

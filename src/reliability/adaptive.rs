@@ -63,7 +63,8 @@ impl AdaptiveMonteCarlo {
             Until::RelativeError(error) => error > 0.0 && error.is_finite(),
             Until::Decided { allowed } => 0.0 < allowed && allowed < 1.0,
         };
-        if !sound || !(0.0 < confidence && confidence < 1.0) || budget == 0 || limits == 0 {
+        let sound = sound && 0.0 < confidence && confidence < 1.0;
+        if !sound || budget == 0 || limits == 0 {
             return Err(Error::argument(
                 "adaptive sampling needs limits, a budget, a positive target and a confidence below 1",
             ));

@@ -6,6 +6,10 @@
 //! defensive share of the nominal density, so its interval owes nothing to the learning. A union learns
 //! limit by limit.
 //!
+//! Unfit, as measured: margins whose slope misleads (RP110: 86 % of the intervals held where 95 % should,
+//! and nothing showed it), and strongly skewed margins far out (DAMPED_27_5: no breach is reached, no
+//! number given).
+//!
 //! Source: Papaioannou, Geyer and Straub, Reliability Engineering and System Safety 191 (2019) 106564.
 
 use super::draws::{open_uniform, standard_normal};
@@ -179,14 +183,11 @@ fn learn(
             .collect();
         // How much of the sample, which follows the last σ, the next breach would keep.
         let last: Vec<f64> = margins.iter().map(|&g| smoothed(g, sigma)).collect();
-        let kept = |of: &dyn Fn(f64) -> f64| {
-            let shares = margins.iter().zip(&last).map(|(&g, &last)| kept_share(of(g), last));
-            variation(&shares.collect::<Vec<f64>>())
-        };
+        let level_sample = LevelSample { margins: &margins, last: &last };
         let sharp = |g: f64| f64::from(u8::from(g < 0.0));
-        let done = kept(&sharp) <= options.variation;
+        let done = level_sample.variation(sharp) <= options.variation;
         if !done {
-            sigma = next_sigma(&kept, &margins, sigma, options.variation);
+            sigma = level_sample.next_sigma(sigma, options.variation);
         }
         let wanted = |g: f64| if done { sharp(g) } else { smoothed(g, sigma) };
         let weights = ratios.iter().zip(&margins).map(|(ratio, &g)| ratio * wanted(g));
@@ -209,10 +210,6 @@ fn smoothed(margin: f64, sigma: f64) -> f64 {
     } else {
         f64::from(u8::from(margin.is_finite()))
     }
-}
-
-fn kept_share(next: f64, last: f64) -> f64 {
-    if last > 0.0 { next / last } else { 0.0 }
 }
 
 /// Weights cut at √N times their mean, so that one point cannot be a whole component's fit.
@@ -238,26 +235,40 @@ fn variation(weights: &[f64]) -> f64 {
     (n * squares / (sum * sum) - 1.0).max(0.0).sqrt()
 }
 
-/// The least σ below the last one at which the shares kept do not vary more than the target, by
-/// bisection of its logarithm; the variation falls as σ grows.
-fn next_sigma(
-    kept: &dyn Fn(&dyn Fn(f64) -> f64) -> f64,
-    margins: &[f64],
-    last: f64,
-    target: f64,
-) -> f64 {
-    let mut high = last;
-    if last.is_infinite() {
-        let finite: Vec<f64> = margins.iter().copied().filter(|g| g.is_finite()).collect();
-        let size = finite.iter().map(|g| g.abs()).sum::<f64>() / (finite.len() as f64).max(1.0);
-        high = 10.0 * size.max(1e-300);
+/// A level's margins, and how much of a breach each point was when the level's density was learnt.
+struct LevelSample<'a> {
+    margins: &'a [f64],
+    last: &'a [f64],
+}
+
+impl LevelSample<'_> {
+    /// Coefficient of variation of the share of each point that the next breach keeps.
+    fn variation(&self, next: impl Fn(f64) -> f64) -> f64 {
+        let pairs = self.margins.iter().zip(self.last);
+        let share = |(&g, &last): (&f64, &f64)| if last > 0.0 { next(g) / last } else { 0.0 };
+        variation(&pairs.map(share).collect::<Vec<f64>>())
     }
-    let mut low = 1e-6 * high;
-    for _ in 0..40 {
-        let middle = (low * high).sqrt();
-        if kept(&|g| smoothed(g, middle)) > target { low = middle } else { high = middle }
+
+    /// The least σ below the last one at which the shares kept do not vary more than the target, by
+    /// bisection of its logarithm; the variation falls as σ grows.
+    fn next_sigma(&self, last: f64, target: f64) -> f64 {
+        let mut high = last;
+        if last.is_infinite() {
+            let finite = self.margins.iter().filter(|g| g.is_finite());
+            let count = finite.clone().count().max(1) as f64;
+            high = 10.0 * (finite.map(|g| g.abs()).sum::<f64>() / count).max(1e-300);
+        }
+        let mut low = 1e-6 * high;
+        for _ in 0..40 {
+            let middle = (low * high).sqrt();
+            if self.variation(|g| smoothed(g, middle)) > target {
+                low = middle
+            } else {
+                high = middle
+            }
+        }
+        high
     }
-    high
 }
 
 /// The independent final sample.

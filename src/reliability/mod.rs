@@ -4,6 +4,7 @@
 //! the intervals that they earned, or the reason why there is none, go out.
 
 // What counts and sorted margins show.
+pub mod allocation;
 pub mod binomial_tails;
 pub mod breach_counts;
 pub mod demonstration;
@@ -21,6 +22,7 @@ pub mod cross_entropy;
 pub mod crossings;
 pub mod crude;
 pub mod design_point;
+mod design_search;
 pub mod directional;
 pub mod draws;
 pub mod estimate;

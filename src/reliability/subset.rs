@@ -19,7 +19,7 @@ use super::draws::standard_normal;
 use super::estimate::{Estimate, Method};
 use super::event::{Evaluator, Event, FaultReading};
 use super::limit_state::LimitState;
-use super::log_replicates::interval_of_replicates;
+use super::log_replicates::{LEAST, interval_of_replicates};
 use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
 use crate::numerics::elementary::exp;
@@ -77,8 +77,8 @@ pub fn subset_simulation(
     if !(0.0 < options.level_probability && options.level_probability <= 0.5) || seeds < 2.0 {
         return Err(Error::argument("subset simulation needs at least two seeds a level"));
     }
-    if options.replicates < 3 {
-        return Err(Error::argument("subset simulation needs at least three replicates"));
+    if options.replicates < LEAST {
+        return Err(Error::argument(format!("subset simulation needs {LEAST} replicates")));
     }
     let safe = run(state, event, options, FaultReading::Safe)?;
     if safe.faults == 0 {

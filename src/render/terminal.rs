@@ -43,8 +43,12 @@ pub fn terminal(findings: &Findings, style: Style) -> String {
     if let Some(sharpest) = &view.verdict.sharpest {
         text += &format!("{}\n", wrapped(&sharpest.replace('`', "")));
     }
+    if let Some(stopping) = &view.stopping {
+        text += &format!("{}\n", wrapped(stopping));
+    }
     let interval_header = format!("{} interval", view.interval_label);
     if !view.probabilities.is_empty() {
+        let interval_header = format!("{} interval", view.probability_label);
         let header = ["event", "breaches", "probability", &interval_header];
         let rows = view.probabilities.iter().filter(|row| !row.pair).map(|row| {
             [&row.title, &row.counts, &row.probability, &row.interval].map(String::clone)
@@ -68,6 +72,12 @@ pub fn terminal(findings: &Findings, style: Style) -> String {
         text += &format!("\n{}\n", table(&header, 1..3, rows, None));
     } else if let Some(why) = &view.drivers.none {
         text += &format!("\n{}\n", wrapped(&format!("No sensitivity indices: {why}.")));
+    }
+    if !view.trade.best.is_empty() {
+        text.push('\n');
+        for line in &view.trade.best {
+            text += &format!("{}\n", wrapped(&line.replace('`', "")));
+        }
     }
     if findings.exceptions.not_deployed + findings.exceptions.faulted > 0 {
         for line in &view.exceptions {
@@ -98,7 +108,7 @@ fn rare(events: &[Rare], interval_header: &str) -> String {
     text
 }
 
-fn wrapped(text: &str) -> String {
+pub(super) fn wrapped(text: &str) -> String {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         match lines.last_mut() {

@@ -3,6 +3,8 @@
 use super::figures_of_speech::{
     bare, count, maybe, probability, probability_interval, upper_end, value, value_interval,
 };
+use super::known_view::{Known, known};
+use super::trade_view::{Shares, Trade, shares, trade};
 use crate::descent::OutcomeQuantity;
 use crate::findings::{
     CONFIDENCE, Decision, DriverOutput, EventKind, FactorFinding, Findings, MarginFinding,
@@ -20,6 +22,9 @@ const SHOWN_FACTORS: usize = 8;
 pub(super) struct View {
     pub title: String,
     pub verdict: Verdict,
+    pub stopping: Option<String>,
+    /// Confidence of the intervals of the probabilities.
+    pub probability_label: String,
     pub interval_label: String,
     pub bound_label: String,
     pub probabilities: Vec<ProbabilityRow>,
@@ -28,6 +33,9 @@ pub(super) struct View {
     pub rare: Vec<Rare>,
     pub margins: Vec<Margin>,
     pub drivers: Drivers,
+    pub shares: Shares,
+    pub trade: Trade,
+    pub known: Known,
     pub nominal: String,
     pub outcomes: Vec<OutcomeRow>,
     pub exceptions: Vec<String>,
@@ -157,6 +165,10 @@ pub(super) fn view(findings: &Findings) -> View {
     View {
         title: findings.title.clone(),
         verdict: verdict(findings),
+        stopping: findings.stopping.as_ref().map(|stopping| stopping.statement.clone()),
+        probability_label: probability(
+            findings.stopping.as_ref().map_or(CONFIDENCE, |stopping| stopping.confidence),
+        ),
         interval_label: probability(CONFIDENCE),
         bound_label: probability(one_sided),
         probabilities: findings.probabilities.iter().map(probability_row).collect(),
@@ -170,6 +182,9 @@ pub(super) fn view(findings: &Findings) -> View {
         rare: findings.rare.iter().map(rare).collect(),
         margins: findings.margins.iter().map(margin).collect(),
         drivers: drivers(findings),
+        shares: shares(&findings.shapley),
+        trade: trade(&findings.trade),
+        known: known(&findings.known),
         nominal: nominal(findings),
         outcomes: findings.outcomes.iter().map(|o| outcome_row(findings, o)).collect(),
         exceptions: exceptions(findings),
@@ -260,6 +275,9 @@ fn probability_row(finding: &crate::findings::ProbabilityFinding) -> Probability
 fn demonstration(findings: &Findings) -> Option<Demonstration> {
     let verdict = &findings.verdict;
     let (reliability, confidence) = (verdict.reliability?, verdict.confidence?);
+    if verdict.failures_allowed.is_empty() {
+        return None;
+    }
     let allowed =
         verdict.failures_allowed.iter().map(|&(f, n)| (count(f), count(n))).collect::<Vec<_>>();
     let mut risks = format!(

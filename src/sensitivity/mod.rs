@@ -6,8 +6,10 @@
 // From a design of their own.
 mod block_sums;
 pub mod bootstrap;
+pub mod morris;
 pub mod pick_freeze;
 mod rare_events;
+pub mod shapley;
 pub mod sobol_indices;
 
 // From samples already run.
@@ -22,3 +24,4 @@ pub mod regression;
 pub mod reweighting;
 pub mod score;
 pub mod score_sums;
+pub mod target;

@@ -2,7 +2,7 @@
 
 use super::card::{self, Card};
 use super::document::{self, Node, Value};
-use super::overrides::{Destination, Override, put};
+use super::overrides::{Destination, Override, in_place_of, put};
 use super::place::Text;
 use super::{Input, Stated, Study, correlation, inputs, read, sections, tighten};
 use crate::descent::Model;
@@ -44,7 +44,7 @@ pub trait Files {
 /// Makes the study that a text, its cards and some overrides describe.
 ///
 /// Reads nothing but what `files` gives it. Of several mistakes the first is reported, in the order:
-/// the study's TOML, its keys, design, plans, limits, cards, inputs, correlations.
+/// the study's TOML, its keys, design, limits, plans, cards, inputs, correlations.
 ///
 /// # Errors
 /// A [`crate::error::Diagnostic`] for every mistake in a text.
@@ -71,14 +71,14 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
         None => Vec::new(),
     };
     let (design, stated) = sections::design([design_entries, design_overrides])?;
-    let sampling = sections::sampling(find("sampling"))?;
+    let limits = find("limits").map_or(Ok(Vec::new()), sections::limits)?;
+    let requirement = find("requirement").map(sections::requirement).transpose()?;
+    let sampling = sections::sampling(find("sampling"), !limits.is_empty(), requirement)?;
     let numerics = sections::numerics(find("numerics"))?;
     let sensitivity = sections::sensitivity(find("sensitivity"))?;
     let reliability = sections::reliability(find("reliability"))?;
     let trade = tighten::trade(find("trade"))?;
     let tighten = tighten::tighten(find("tighten"), &design)?;
-    let limits = find("limits").map_or(Ok(Vec::new()), sections::limits)?;
-    let requirement = find("requirement").map(sections::requirement).transpose()?;
     if let (Some(node), true) = (find("requirement"), limits.is_empty()) {
         let expected = "expected at least one limit, such as [limits] time = { max = \"210 s\" }";
         return Err(node.place.error("a requirement without limits says nothing", expected));
@@ -145,6 +145,7 @@ fn apply<'o>(
             }
             Destination::Study(keys) => {
                 if let Value::Table(entries) = &mut document.value {
+                    let keys = in_place_of(entries, keys);
                     put(entries, &keys, &statement.path, &statement.value)?;
                 }
             }

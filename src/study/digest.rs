@@ -1,6 +1,7 @@
 //! Digests: of the resolved study, which fixes every number of a run, and of its raw texts.
 
 use super::{LimitKind, Study, TighteningCost};
+use crate::reliability::adaptive::Until;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
@@ -63,6 +64,13 @@ impl Study {
             plan.seed,
             plan.replicates
         ));
+        if let Some(stopping) = plan.stopping {
+            let until = match stopping.until {
+                Until::RelativeError(error) => format!("relative_error={error:e}"),
+                Until::Decided { allowed } => format!("decided={allowed:e}"),
+            };
+            lines.push(format!("until {until} confidence={:e}", stopping.confidence));
+        }
         lines.push(format!("numerics tolerance={:e}", self.numerics.tolerance));
         let plan = self.sensitivity;
         lines.push(format!(

@@ -21,6 +21,7 @@ mod resolved;
 pub mod schema;
 mod sections;
 mod tighten;
+mod until;
 mod vocabulary;
 
 use crate::descent::{Model, Outcome, OutcomeQuantity};
@@ -33,6 +34,7 @@ pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, read_column};
 pub use overrides::Override;
 pub use resolved::{ResolvedParameter, UncertainLaw};
 pub use tighten::{DesignRange, Grade, TightenPlan, TighteningCost, TradePlan};
+pub use until::StoppingPlan;
 
 /// A study, resolved: every value in SI, every name known.
 #[derive(Debug, Clone)]
@@ -223,12 +225,14 @@ pub struct Requirement {
 pub struct SamplingPlan {
     /// The design of experiment.
     pub design: sampling::Design,
-    /// Number of descents in all, over all replicates.
+    /// Number of descents in all, over all replicates; the most of them if `stopping` may end them sooner.
     pub samples: u64,
     /// Seed of every random stream.
     pub seed: u64,
     /// Number of independent replicates; 1 for plain Monte Carlo, else it divides `samples`.
     pub replicates: u32,
+    /// When sampling ends before `samples`, if it may.
+    pub stopping: Option<StoppingPlan>,
 }
 
 /// How accurately a descent is integrated.

@@ -5,7 +5,7 @@ use super::document::{Key, Node, Table, Value, parse_value};
 use super::laws::law_keys;
 use super::place::{Place, Text};
 use super::read;
-use super::vocabulary::{INPUT, KeyInfo, LIMIT, STUDY};
+use super::vocabulary::{INPUT, KeyInfo, LIMIT, STUDY, UNTIL};
 use crate::descent::OutcomeQuantity;
 use crate::error::Result;
 use crate::physics::parameters::PARAMETERS;
@@ -17,6 +17,9 @@ use std::sync::Arc;
 /// The path is a design key (`initial.temperature`, `brake.gap[3]`), a key of the study file
 /// (`model`, `sampling.samples`, `limits.time.max`, `requirement.reliability`) or a key of the card
 /// (`brake.gap.sd`). The value is TOML, or a text whose quotes the shell has eaten.
+///
+/// `sampling.samples` is the budget of a study that samples until something, and `sampling.until` takes
+/// the place of the file's `samples`.
 ///
 /// A design key moves the *nominal* value. Where the card makes the parameter uncertain, the
 /// samples still follow the card's law; [`crate::study::Study::notes`] says so.
@@ -86,6 +89,14 @@ impl Override {
             if keys.iter().any(|info| info.name == rest) {
                 return Ok(Destination::Study(vec![section.to_owned(), rest.to_owned()]));
             }
+            let until = rest.strip_prefix("until.").filter(|_| section == "sampling");
+            if let Some(key) = until
+                && UNTIL.iter().any(|info| info.name == key)
+            {
+                return Ok(Destination::Study(
+                    ["sampling", "until", key].map(str::to_owned).to_vec(),
+                ));
+            }
             // Whether the outcome and the side exist is found out where limits are read.
             if section == "limits" && rest.matches('.').count() < 2 {
                 let parts = rest.split('.').map(str::to_owned);
@@ -120,6 +131,7 @@ impl Override {
                 section_keys(info.name).iter().map(|k| format!("{}.{}", info.name, k.name)),
             );
         }
+        paths.extend(UNTIL.iter().map(|key| format!("sampling.until.{}", key.name)));
         for outcome in OutcomeQuantity::ALL {
             paths.extend(
                 LIMIT.iter().map(|side| format!("limits.{}.{}", outcome.name(), side.name)),
@@ -164,6 +176,29 @@ pub(super) enum Destination {
         /// The key.
         key: String,
     },
+}
+
+/// Where a statement about the number of samples goes, so that it takes the place of what the file says
+/// of it: `sampling.samples` is the budget of a study with `until`, and `sampling.until` takes `samples`
+/// away.
+pub(super) fn in_place_of(entries: &mut Table, keys: Vec<String>) -> Vec<String> {
+    let names: Vec<&str> = keys.iter().map(String::as_str).collect();
+    let sampling = entries.iter_mut().find(|(key, _)| key.name == "sampling");
+    let Some((_, Node { value: Value::Table(inner), .. })) = sampling else { return keys };
+    match names[..] {
+        ["sampling", "samples"]
+            if inner.iter().any(|(key, node)| {
+                key.name == "until" && matches!(node.value, Value::Table(_))
+            }) =>
+        {
+            ["sampling", "until", "budget"].map(str::to_owned).to_vec()
+        }
+        ["sampling", "until", ..] => {
+            inner.retain(|(key, _)| key.name != "samples");
+            keys
+        }
+        _ => keys,
+    }
 }
 
 /// Puts a value into a tree at nested keys, in place of what is there.

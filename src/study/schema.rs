@@ -8,7 +8,7 @@ use super::correlation::MEASURES;
 use super::laws::{Kind, LAWS, LawInfo, TERMS, keys_of};
 use super::vocabulary::{
     CARD, CORRELATION, GRADE, INPUT, KeyInfo, LIMIT, METHODS, NUMERICS, RELIABILITY, REQUIREMENT,
-    SAMPLING, SENSITIVITY, STUDY, TIGHTEN, TRADE,
+    SAMPLING, SENSITIVITY, STUDY, TIGHTEN, TRADE, UNTIL,
 };
 use crate::descent::{Model, OutcomeQuantity};
 use crate::physics::parameters::{PARAMETERS, Parameter, ParameterInfo};
@@ -29,7 +29,8 @@ pub fn study() -> Value {
     }
     let limits = json!({ "type": "object", "properties": limits, "additionalProperties": false });
     let requirement = table(REQUIREMENT, |_| share(), &["reliability", "confidence"]);
-    let sampling = table(SAMPLING, sampling_key, &[]);
+    let mut sampling = table(SAMPLING, sampling_key, &[]);
+    insert(&mut sampling, "not", json!({ "required": ["samples", "until"] }));
     let numerics =
         table(NUMERICS, |_| json!({ "type": "number", "minimum": 1e-12, "maximum": 1e-2 }), &[]);
     let sensitivity =
@@ -154,6 +155,7 @@ fn share() -> Value {
 
 fn sampling_key(info: &KeyInfo) -> Value {
     match info.name {
+        "until" => until(),
         "design" => json!({ "enum": sampling::Design::ALL.map(sampling::Design::name) }),
         "samples" => json!({ "type": "integer", "minimum": 1, "maximum": sampling::MAX_SAMPLES }),
         "replicates" => {
@@ -161,6 +163,19 @@ fn sampling_key(info: &KeyInfo) -> Value {
         }
         _ => whole(0),
     }
+}
+
+/// What ends the sampling: one of two rules.
+fn until() -> Value {
+    let value = |info: &KeyInfo| match info.name {
+        "decided" => json!({ "const": true }),
+        "budget" => json!({ "type": "integer", "minimum": 1, "maximum": sampling::MAX_SAMPLES }),
+        _ => share(),
+    };
+    let mut schema = table(UNTIL, value, &["budget"]);
+    let rules = ["relative_error", "decided"].map(|rule| json!({ "required": [rule] }));
+    insert(&mut schema, "oneOf", json!(rules));
+    schema
 }
 
 /// A quantity's name among the definitions.

@@ -3,6 +3,7 @@
 use super::card::parameter_path;
 use super::document::{Key, Node, Value};
 use super::read::{self, Section, unknown_key};
+use super::until;
 use super::vocabulary as keys;
 use super::{
     Limit, LimitKind, Numerics, ReliabilityPlan, Requirement, SamplingPlan, SensitivityPlan, Stated,
@@ -280,12 +281,17 @@ pub(super) fn requirement(node: &Node) -> Result<Requirement> {
 }
 
 /// `[sampling]`; without it, plain Monte Carlo.
-pub(super) fn sampling(node: Option<&Node>) -> Result<SamplingPlan> {
+pub(super) fn sampling(
+    node: Option<&Node>,
+    has_limits: bool,
+    requirement: Option<Requirement>,
+) -> Result<SamplingPlan> {
     let mut plan = SamplingPlan {
         design: sampling::Design::MonteCarlo,
         samples: DEFAULT_SAMPLES,
         seed: DEFAULT_SEED,
         replicates: 1,
+        stopping: None,
     };
     let Some(node) = node else { return Ok(plan) };
     let entries = read::table(node, "{ samples = 100_000, seed = 1993 }")?;
@@ -295,7 +301,9 @@ pub(super) fn sampling(node: Option<&Node>) -> Result<SamplingPlan> {
         plan.design = read::choice(node, "sampling design", &names, sampling::Design::from_name)?;
     }
     let plain = !plan.design.is_replicated();
-    if let Some(node) = section.get("samples") {
+    if let Some(node) = section.get("until") {
+        until::until(node, section.get("samples"), has_limits, requirement, &mut plan)?;
+    } else if let Some(node) = section.get("samples") {
         plan.samples = read::integer(node, 1, sampling::MAX_SAMPLES, "100_000")?;
     }
     if let Some(node) = section.get("seed") {

@@ -43,6 +43,18 @@ pub(super) static SAMPLING: &[KeyInfo] = &[
     key("samples", "number of descents in all, over all replicates"),
     key("seed", "seed of every random stream"),
     key("replicates", "independent replicates of a randomised design; the error is read from them"),
+    key("until", "what ends the sampling, in place of samples; design \"monte-carlo\" only"),
+];
+
+/// Keys of `until`.
+pub(super) static UNTIL: &[KeyInfo] = &[
+    key(
+        "relative_error",
+        "farthest reach of the interval of any breach, as a share of its estimate",
+    ),
+    key("decided", "true: the requirement is shown to be met or missed"),
+    key("confidence", "confidence of the intervals at every look; the requirement's if left out"),
+    key("budget", "number of descents after which sampling ends in any case"),
 ];
 
 /// Keys of `[numerics]`.

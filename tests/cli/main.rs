@@ -1,12 +1,14 @@
 //! The program from end to end: what is typed, printed, written, and the code it ends with.
 
 mod acceptance;
+mod artefacts;
 mod determinism;
 mod disk;
 mod errors;
 mod inspection;
 mod interruption;
 mod program;
+mod published;
 mod readers;
 mod replaying;
 mod verdicts;

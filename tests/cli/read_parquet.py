@@ -53,7 +53,7 @@ def main(run, trace):
         f"""SELECT count(*) FROM read_parquet('{run}/outcomes.parquet')
             WHERE time_margin_s < 0 OR final_velocity_margin_m_per_s < 0
                OR peak_fluid_temperature_margin_k < 0"""
-    ).fetchone()[0]
+    ).fetchall()[0][0]
     margins = [name for name in frame if "_margin_" in name]
     assert len(margins) == 3, margins
     assert (frame[margins] < 0).any(axis=1).sum() == any_breach

@@ -4,6 +4,7 @@ use super::sources::shipped;
 use reeldown::descent::Model;
 use reeldown::error::Error;
 use reeldown::physics::parameters::Parameter;
+use reeldown::reliability::adaptive::Until;
 
 #[test]
 fn property_an_override_reaches_every_part_of_a_study() {
@@ -56,6 +57,26 @@ fn property_fewer_rotors_have_fewer_uncertain_gaps() {
 fn property_the_last_of_two_overrides_wins() {
     let study = shipped(&["brake.gap=0.07 in", "brake.gap=0.06 in"]).expect("a study");
     assert_eq!(study.design.get(Parameter::BrakeGap), 0.06 * 0.0254);
+}
+
+#[test]
+fn property_samples_and_until_take_each_others_place() {
+    // The shipped study says samples = 100_000; its requirement, 0.99 at 0.90.
+    let until = "sampling.until={decided=true, budget=5_000}";
+    let plan = shipped(&[until]).expect("a study").sampling;
+    let stopping = plan.stopping.expect("a rule");
+    assert_eq!((plan.samples, stopping.confidence), (5000, 0.9));
+    assert_eq!(stopping.until, Until::Decided { allowed: 1.0 - 0.99 });
+    let plan = shipped(&[until, "sampling.samples=7000"]).expect("a study").sampling;
+    assert_eq!((plan.samples, plan.stopping.is_some()), (7000, true));
+    let parts = ["sampling.until.relative_error=5 %", "sampling.until.budget=1e6"];
+    let plan = shipped(&parts).expect("a study").sampling;
+    let stopping = plan.stopping.expect("a rule");
+    assert_eq!((plan.samples, stopping.until), (1_000_000, Until::RelativeError(0.05)));
+    let digests = [&[until][..], &parts, &[]].map(|set| shipped(set).expect("a study").digest());
+    assert!(digests[0] != digests[1] && digests[1] != digests[2] && digests[0] != digests[2]);
+    let error = shipped(&["sampling.until.buget=3"]).expect_err("a misspelling");
+    assert!(error.to_string().ends_with("did you mean `sampling.until.budget`?"), "{error}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::sources::{card_alone, shipped, study_with};
 use reeldown::descent::{Model, Outcome, OutcomeQuantity};
 use reeldown::physics::design::{Design, Target};
 use reeldown::physics::parameters::Parameter;
-use reeldown::study::{Known, LimitKind, Study};
+use reeldown::study::{Grade, Known, LimitKind, Study, TighteningCost};
 use reeldown::uncertainty::{Law, Marginal};
 
 const INCH: f64 = 0.0254;
@@ -31,6 +31,10 @@ fn published_the_embedded_study_is_the_papers_case() {
     assert_eq!((study.sampling.samples, study.sampling.seed), (100_000, 1993));
     assert_eq!(study.sampling.replicates, 1);
     assert!(study.notes.is_empty(), "{:?}", study.notes);
+    // The design question of the paper: which nominal viscosity?
+    let [range] = &study.tighten.design[..] else { panic!("one design value moves") };
+    assert_eq!(range.target.path(), "fluid.nominal_viscosity");
+    assert!(range.lower < 0.103 && 0.125 < range.upper);
 }
 
 #[test]
@@ -99,6 +103,14 @@ fn property_every_spelling_of_a_study_is_read() {
     assert_eq!(study.limits.len(), 11);
     assert_eq!(study.requirement.map(|requirement| requirement.reliability), Some(0.9973));
     assert_eq!(study.inputs.len(), 6 + 9);
+    assert_eq!((study.trade.samples, study.tighten.samples), (5000, 10_000));
+    assert_eq!(study.tighten.target, Some(0.01));
+    let ranges: Vec<(String, f64, f64)> =
+        study.tighten.design.iter().map(|r| (r.target.path(), r.lower, r.upper)).collect();
+    let lift = ("balloon.free_lift".to_owned(), 0.04, 0.07);
+    assert_eq!(ranges[1], lift);
+    // cSt are 1e-6 m²/s; one rounding each.
+    assert!((ranges[0].1 / 0.09 - 1.0).abs() < 1e-15 && (ranges[0].2 / 0.14 - 1.0).abs() < 1e-15);
     assert!(
         study.notes.iter().any(|note| note.contains("initial.temperature")),
         "{:?}",
@@ -117,6 +129,13 @@ fn property_every_law_is_read() {
         found.unwrap_or_else(|| panic!("{} is uncertain", target.path()))
     };
     let whole = |parameter| of(Target::whole(parameter)).marginal.clone();
+    let cost = |parameter| of(Target::whole(parameter)).cost.clone();
+    let grade = |spread, cost| Grade { spread, cost };
+    let grades = TighteningCost::Grades(vec![grade(0.5, 100.0), grade(0.2, 400.0)]);
+    assert_eq!(cost(Parameter::BrakeOuterRadius), grades);
+    assert_eq!(cost(Parameter::BrakeInnerRadius), TighteningCost::None);
+    assert_eq!(cost(Parameter::BalloonDragArea), TighteningCost::PerHalving(1.0));
+    assert_eq!(of(Target::gap(4)).cost, TighteningCost::PerHalving(250.0));
     assert_eq!(of(Target::gap(2)).group.as_deref(), Some("measured"));
     assert_eq!(of(Target::gap(3)).marginal.mean(), 0.0016);
     assert_eq!(of(Target::gap(4)).group.as_deref(), Some("brake.gap"));

@@ -1,1 +1,7 @@
-//! x
+//! The trade of tolerances: derivatives, curves, plans, and what becomes known when.
+
+mod curves;
+mod derivatives;
+mod known;
+mod plans;
+mod shapley;

@@ -7,5 +7,6 @@ mod reference_descents;
 mod reliability_methods;
 mod vector_descents;
 mod vector_elementary;
+mod vector_gradients;
 mod vector_members;
 mod vector_rosenbrock;

@@ -1,7 +1,7 @@
 //! Reliability methods against published problems with certified probabilities.
 
-use super::benchmarks::coverage::{METHODS, answer};
-use super::benchmarks::{self, AsOneMargin, Benchmark, Function};
+use super::benchmarks::coverage::{CSV_HEADER, Coverage, METHODS, answer};
+use super::benchmarks::{self, Benchmark, Function};
 use reeldown::error::Result;
 use reeldown::numerics::columns::Columns;
 use reeldown::numerics::special::normal;
@@ -20,8 +20,35 @@ use reeldown::reliability::sorm::{SormOptions, sorm};
 use reeldown::reliability::subset::{SubsetOptions, subset_simulation};
 use reeldown::reliability::system::system_form;
 
+/// The problem of this identifier.
+fn named(id: &str) -> Benchmark {
+    benchmarks::all().into_iter().find(|benchmark| benchmark.id == id).expect("a known problem")
+}
+
+/// A system hidden behind the single margin of its event, as the collections publish it.
+struct AsOneMargin<'a>(&'a Benchmark);
+
+impl LimitState for AsOneMargin<'_> {
+    fn dimension(&self) -> usize {
+        self.0.limits.dimension
+    }
+
+    fn limits(&self) -> usize {
+        1
+    }
+
+    fn margins(&self, z: &Columns, margins: &mut Columns) -> Result<()> {
+        let mut all = Columns::new(z.rows(), self.0.limits.limits);
+        self.0.limits.margins(z, &mut all)?;
+        for k in 0..z.rows() {
+            margins.set(k, 0, self.0.event.margin(all.row(k).into_iter()));
+        }
+        Ok(())
+    }
+}
+
 fn first_order(id: &str) -> f64 {
-    let benchmark = benchmarks::named(id);
+    let benchmark = named(id);
     form(&benchmark.limits, 0, &SearchOptions::default()).unwrap().0.probability.unwrap()
 }
 
@@ -31,7 +58,7 @@ fn analytic_form_of_a_plane_is_exact() {
     for (id, probability) in [("RP107", normal::cdf(-5.0)), ("RMINUSS", 0.0786496035251426)] {
         assert!((first_order(id) / probability - 1.0).abs() < 1e-12, "{id}");
     }
-    let benchmark = benchmarks::named("RP107");
+    let benchmark = named("RP107");
     let found =
         design_points(&benchmark.limits, Event::Limit(0), &SearchOptions::default()).unwrap();
     assert_eq!(found.points.len(), 1);
@@ -50,7 +77,7 @@ fn published_form_values_of_the_collections() {
 #[test]
 fn published_trap_form_is_far_too_high_on_the_damped_oscillator() {
     for (id, least, most) in [("DAMPED_15_0", 4.5, 4.7), ("DAMPED_27_5", 10.0, 10.6)] {
-        let ratio = first_order(id) / benchmarks::named(id).probability;
+        let ratio = first_order(id) / named(id).probability;
         assert!(least < ratio && ratio < most, "{id}: {ratio}");
     }
 }
@@ -58,7 +85,7 @@ fn published_trap_form_is_far_too_high_on_the_damped_oscillator() {
 #[test]
 fn published_trap_form_is_low_on_the_four_branches() {
     // 2.33e-4, ten times low, is the plane of the farther branch, where a single search can end.
-    let benchmark = benchmarks::named("FOURBRANCH");
+    let benchmark = named("FOURBRANCH");
     let found = design_points(&benchmark.limits, Event::Any, &SearchOptions::default()).unwrap();
     let far = found.nearest(2).unwrap().reliability_index;
     assert!((far - 3.5).abs() < 1e-9);
@@ -98,7 +125,7 @@ fn property_an_unconverged_search_reports_no_number() {
 fn analytic_sorm_of_a_parabola() {
     // RP22 and the branch of FOURBRANCH are 2.5 − s + 0.2 t² and 3 − s + 0.2 t²: κ = 0.4, exact under
     // second differences. Formulas by hand; 1e-6 is the rounding of differences with a step of 0.05.
-    let benchmark = benchmarks::named("RP22");
+    let benchmark = named("RP22");
     let (second, _) = sorm(&benchmark.limits, 0, &SormOptions::default()).unwrap();
     assert!((second.curvatures[0] - 0.4).abs() < 1e-6);
     let tail = normal::survival(2.5);
@@ -138,7 +165,7 @@ fn analytic_sorm_of_a_hundred_dimensions() {
 #[test]
 fn property_sorm_without_a_value_reports_no_number() {
     // The shell of RP63 curves around the origin.
-    let benchmark = benchmarks::named("RP63");
+    let benchmark = named("RP63");
     let search = SearchOptions { directions: 0, ..SearchOptions::default() };
     let options = SormOptions { search, ..SormOptions::default() };
     let (second, _) = sorm(&benchmark.limits, 0, &options).unwrap();
@@ -148,7 +175,7 @@ fn property_sorm_without_a_value_reports_no_number() {
 #[test]
 fn analytic_system_form_of_two_planes() {
     // RP33 is two planes at distance 3 with α·α = 1/√3: the union is exact, up to quadrature and search.
-    let benchmark = benchmarks::named("RP33");
+    let benchmark = named("RP33");
     let (estimate, _) =
         system_form(&benchmark.limits, Event::Any, &SearchOptions::default()).unwrap();
     let ratio = estimate.probability.unwrap() / benchmark.probability;
@@ -186,7 +213,7 @@ fn holds(method: Method, benchmark: &Benchmark, effort: f64) {
 #[test]
 fn published_problems_by_crude_monte_carlo() {
     for benchmark in benchmarks::all().iter().filter(|b| b.probability > 1e-3) {
-        holds(Method::CrudeMonteCarlo, benchmark, 0.2);
+        holds(Method::CrudeMonteCarlo, benchmark, 0.1);
     }
 }
 
@@ -200,7 +227,7 @@ fn published_problems_by_importance_sampling() {
 #[test]
 fn published_problems_by_subset_simulation() {
     for benchmark in &benchmarks::all() {
-        let effort = if benchmark.limits.dimension == 100 { 0.2 } else { 0.5 };
+        let effort = if benchmark.limits.dimension == 100 { 0.1 } else { 0.2 };
         holds(Method::SubsetSimulation, benchmark, effort);
     }
 }
@@ -216,14 +243,30 @@ fn published_problems_by_line_sampling() {
 #[test]
 fn published_problems_by_directional_sampling() {
     for id in ["RP22", "RP53", "RMINUSS", "RSQUAD", "CANTILEVER2D", "RP33", "RP55", "FOURBRANCH"] {
-        holds(Method::DirectionalSampling, &benchmarks::named(id), 1.0);
+        holds(Method::DirectionalSampling, &named(id), 1.0);
     }
 }
 
 #[test]
 fn published_problems_by_cross_entropy() {
-    for id in ["RP22", "RP25", "RP33", "RP8", "RP107"] {
-        holds(Method::CrossEntropy, &benchmarks::named(id), 0.5);
+    for id in ["RP22", "RP25", "RP8"] {
+        holds(Method::CrossEntropy, &named(id), 0.5);
+    }
+}
+
+#[test]
+fn published_coverage_certificate_in_short() {
+    // Twenty seeds at half the effort: 14 or fewer of 20 has a chance of 3e-4 at 95 % (binomial).
+    for (method, id) in [
+        (Method::CrudeMonteCarlo, "RP55"),
+        (Method::ImportanceSampling, "RP22"),
+        (Method::SubsetSimulation, "RP53"),
+        (Method::LineSampling, "RP33"),
+        (Method::DirectionalSampling, "RMINUSS"),
+    ] {
+        let row = Coverage::measure(method, &named(id), 20, 0.5);
+        assert!(row.stated == 20 && row.held >= 15, "{}", row.markdown());
+        assert_eq!(row.csv().split(',').count(), CSV_HEADER.split(',').count());
     }
 }
 
@@ -236,7 +279,7 @@ fn published_trap_methods_withdraw_their_interval_where_they_are_unfit() {
         (Method::DirectionalSampling, "RP107"),
         (Method::CrudeMonteCarlo, "RP107"),
     ] {
-        let benchmark = benchmarks::named(id);
+        let benchmark = named(id);
         let estimate = answer(method, &benchmark, 1, 0.2);
         match estimate.interval.interval() {
             // Crude Monte Carlo's exact interval is never wrong, only wide.
@@ -251,7 +294,7 @@ fn published_trap_methods_withdraw_their_interval_where_they_are_unfit() {
 fn published_trap_subset_simulation_follows_the_falling_margin_of_rp110() {
     // As one margin, the walks run after x2, whose share is 2.9e-7, and never see x1, whose share is
     // 3.2e-5: the interval is narrow and a hundred times too low, and nothing in the walks shows it.
-    let benchmark = benchmarks::named("RP110");
+    let benchmark = named("RP110");
     let one = AsOneMargin(&benchmark);
     let event = Event::Limit(0);
     let options = SubsetOptions { samples_per_level: 200, ..SubsetOptions::default() };
@@ -268,7 +311,7 @@ fn published_trap_subset_simulation_follows_the_falling_margin_of_rp110() {
 
 #[test]
 fn property_methods_agree_on_a_problem_that_suits_them() {
-    let benchmark = benchmarks::named("RP33");
+    let benchmark = named("RP33");
     let estimates = METHODS.map(|method| answer(method, &benchmark, 3, 0.5));
     let check = agreement(&estimates, 0.01).unwrap();
     assert_eq!((check.agrees, check.comparisons.len()), (Some(true), 15));
@@ -304,7 +347,7 @@ impl LimitState for InPieces<'_> {
 
 #[test]
 fn property_same_seed_same_bits_however_batches_are_cut() {
-    let benchmark = benchmarks::named("RP33");
+    let benchmark = named("RP33");
     let (whole, pieces) = (&benchmark.limits, &InPieces(&benchmark.limits));
     let event = benchmark.event;
     let options = SubsetOptions { samples_per_level: 100, seed: 9, ..SubsetOptions::default() };

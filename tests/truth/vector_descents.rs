@@ -108,7 +108,7 @@ fn regression_steps_and_evaluations_per_descent() {
     let cases = [
         (Model::Dynamic, 1e-5, 26.39, 158.6),
         (Model::Dynamic, 1e-6, 42.22, 253.7),
-        (Model::QuasiSteady, 1e-6, 39.61, 236.3),
+        (Model::QuasiSteady, 1e-6, 34.16, 205.5),
     ];
     let batch = default_study(2000);
     for (model, tolerance, attempts, evaluations) in cases {

@@ -1,6 +1,7 @@
 //! A lane's constants: a descent's coefficients in the combinations that the kernels use.
 
 use crate::numerics::lanes::Lanes;
+use crate::numerics::real::Real;
 use crate::physics::{Coefficients, GRAVITY};
 
 macro_rules! constants {
@@ -12,8 +13,16 @@ macro_rules! constants {
             $($(#[$doc])* pub $name: V,)*
         }
 
+        impl<V: Copy> Constants<V> {
+            /// The same constants in another number type.
+            pub fn map<T>(&self, convert: impl Fn(V) -> T) -> Constants<T> {
+                Constants { $($name: convert(self.$name),)* }
+            }
+        }
+
         impl<V: Lanes> Constants<V> {
             /// The same constants in every lane.
+            #[inline(always)]
             pub fn splat(one: &Constants<f64>) -> Self {
                 Constants { $($name: V::splat(one.$name),)* }
             }
@@ -29,6 +38,8 @@ macro_rules! constants {
 constants! {
     /// Line length `L`, m.
     length,
+    /// `1/L`, 1/m.
+    inverse_length,
     /// `Ro²`, m².
     full_radius_squared,
     /// `s = (Ro² − Ri²)/L`, m.
@@ -91,11 +102,14 @@ constants! {
     rise_speed,
 }
 
-impl Constants<f64> {
-    /// The constants of a descent, or nothing if they are impossible: not finite, or with the wrong sign
-    /// where the equations need one.
-    pub fn new(c: &Coefficients<f64>) -> Option<Self> {
-        let total_mass = c.balloon.moving_mass_kg + c.payload.weight_n / GRAVITY;
+impl<R: Real> Constants<R> {
+    /// The constants of a descent.
+    pub fn new(c: &Coefficients<R>) -> Self {
+        let value = R::constant;
+        let one = value(1.0);
+        let gravity = value(GRAVITY);
+        let payload_mass = c.payload.weight_n / gravity;
+        let total_mass = c.balloon.moving_mass_kg + payload_mass;
         let heat = &c.thermal;
         let (c1, c2, c3) = (
             heat.fluid_capacity_j_per_k,
@@ -103,28 +117,30 @@ impl Constants<f64> {
             heat.housing_capacity_j_per_k,
         );
         let torque = c.fluid.torque_per_speed_nms;
-        let constants = Constants {
+        let thins = c.fluid.shear_thinning;
+        Constants {
             length: c.reel.line_length_m,
+            inverse_length: one / c.reel.line_length_m,
             full_radius_squared: c.reel.full_radius_squared_m2,
             radius_slope: c.reel.squared_radius_slope_m,
             inertia: c.reel.inertia_kg_m2,
-            spool_pull: 0.5 * c.reel.inertia_kg_m2 * c.reel.squared_radius_slope_m,
+            spool_pull: value(0.5) * c.reel.inertia_kg_m2 * c.reel.squared_radius_slope_m,
             torque,
-            inverse_torque: 1.0 / torque,
+            inverse_torque: one / torque,
             minus_viscosity_temperature: -c.fluid.viscosity_temperature_k,
             averaging_offset: c.fluid.averaging_offset,
-            cross_group: if c.fluid.shear_thinning { c.fluid.cross_time_s / torque } else { 0.0 },
-            cross_exponent: if c.fluid.shear_thinning { c.fluid.cross_exponent } else { 0.5 },
-            cross_on: if c.fluid.shear_thinning { 1.0 } else { 0.0 },
+            cross_group: if thins { c.fluid.cross_time_s / torque } else { value(0.0) },
+            cross_exponent: if thins { c.fluid.cross_exponent } else { value(0.5) },
+            cross_on: value(if thins { 1.0 } else { 0.0 }),
             weight: c.payload.weight_n,
             extraction: c.payload.extraction_n_per_m,
             total_mass,
-            inverse_mass: 1.0 / total_mass,
-            payload_share: c.payload.weight_n / GRAVITY / total_mass,
-            share_slope: c.payload.extraction_n_per_m / GRAVITY / total_mass,
+            inverse_mass: one / total_mass,
+            payload_share: payload_mass / total_mass,
+            share_slope: c.payload.extraction_n_per_m / gravity / total_mass,
             free_lift: c.balloon.net_lift_n - c.payload.weight_n,
             drag: c.balloon.drag_factor_kg_per_m,
-            inverse_fluid_capacity: 1.0 / c1,
+            inverse_fluid_capacity: one / c1,
             fluid_rotor_1: heat.fluid_rotor_w_per_k / c1,
             fluid_housing_1: heat.fluid_housing_w_per_k / c1,
             fluid_rotor_2: heat.fluid_rotor_w_per_k / c2,
@@ -135,13 +151,22 @@ impl Constants<f64> {
             air_k: heat.air_k,
             initial_temperature: c.initial_temperature_k,
             rise_speed: c.balloon.rise_speed_m_per_s,
-        };
-        constants.possible(c).then_some(constants)
+        }
+    }
+}
+
+impl Constants<f64> {
+    /// The constants of a descent, or nothing if they are impossible: not finite, or with the wrong sign
+    /// where the equations need one.
+    pub fn possible(c: &Coefficients<f64>) -> Option<Self> {
+        let constants = Constants::new(c);
+        constants.are_possible(c).then_some(constants)
     }
 
-    fn possible(&self, c: &Coefficients<f64>) -> bool {
+    fn are_possible(&self, c: &Coefficients<f64>) -> bool {
         let positive = [
             self.length,
+            self.inverse_length,
             self.full_radius_squared,
             self.full_radius_squared - self.radius_slope * self.length,
             self.torque,

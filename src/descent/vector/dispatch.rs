@@ -1,8 +1,8 @@
 //! Which instruction set runs the kernel.
 
 use super::dynamic::Dynamic;
-use super::kernel::run;
 use super::quasi_steady::QuasiSteady;
+use super::queue::run;
 use super::settings::{Counts, Settings};
 use crate::descent::model::Model;
 use crate::descent::outcome::{Fault, Outcome};

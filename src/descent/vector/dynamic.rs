@@ -177,7 +177,13 @@ impl<V: Lanes> System<V, STATES> for Dynamic<V> {
     }
 
     #[inline(always)]
-    fn factor(&self, y: &[V; STATES], m: &Moment<V>, h_gamma: V) -> Factored<V> {
+    fn factor(
+        &self,
+        y: &[V; STATES],
+        m: &Moment<V>,
+        h_gamma: V,
+        inverse_h_gamma: V,
+    ) -> Factored<V> {
         let k = &self.constants;
         let one = V::splat(1.0);
         let z = y[2];
@@ -185,7 +191,7 @@ impl<V: Lanes> System<V, STATES> for Dynamic<V> {
         let alpha = self.clock.length;
         let pace = self.clock.pace(m.v);
         let [line_rate, centre_rate, _, fluid_rate, rotor_rate, housing_rate, g] = m.rates;
-        let c = pace / h_gamma;
+        let c = pace * inverse_h_gamma;
         let eps = k.averaging_offset;
 
         // Heat: the feedback of temperature at fixed velocity, and the columns of u_v and u_l.
@@ -247,8 +253,10 @@ impl<V: Lanes> System<V, STATES> for Dynamic<V> {
         let specific = m.force * m.inverse_q;
         let lambda = m.b.neg_mul_add(m.tv_rate, sw);
         let jsw = k.inertia * sw;
-        let inverse_p = one / m.p;
-        let kappa = (k.torque * inverse_p) / m.fluidity;
+        let per_pull = m.p * m.fluidity;
+        let shared = one / (per_pull * m.p);
+        let inverse_p = shared * per_pull;
+        let kappa = k.torque * (shared * m.p);
         let mass_slope = k.total_mass * (k.share_slope * (m.eta + m.eta - one));
         let n_line = -((n * n).mul_add(mass_slope, (k.inertia * s) * (m.inverse_q * m.inverse_q)));
         let spread = s * m.w.mul_add(lambda, specific);
@@ -287,7 +295,7 @@ impl<V: Lanes> System<V, STATES> for Dynamic<V> {
             [
                 -(line * inverse_pivot),
                 -((by_centre * centre[0]) * inverse_pivot),
-                (pace / kappa) * inverse_pivot,
+                (pace * (k.inverse_torque * per_pull)) * inverse_pivot,
                 (gvb.mul_add(eps, gvb) - heat_row(0)) * inverse_pivot,
                 -(gvb.mul_add(eps, heat_row(1)) * inverse_pivot),
                 -(heat_row(2) * inverse_pivot),
@@ -336,10 +344,10 @@ impl<V: Lanes> Moment<V> {
         self.b
     }
 
-    /// `η D'/load`: relative change of the load per change of the centre's velocity, s/m.
+    /// `η D'`: change of the load's counterpart per change of the centre's velocity, N·s/m.
     #[inline(always)]
-    pub fn drag_per_load(&self) -> V {
-        self.eta * self.drag_slope / self.load
+    pub fn drag_share(&self) -> V {
+        self.eta * self.drag_slope
     }
 }
 

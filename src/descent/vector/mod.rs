@@ -1,4 +1,27 @@
 //! The vector integrator: many descents at once, one in each lane.
+//!
+//! Every lane has its own time, step size, error control, end and peaks, and is refilled from the queue
+//! when it ends. A lane's result is a function of its own coefficients and the tolerance alone, to the bit:
+//! not of its neighbours, of the batch's order or size, or of the instruction set (see
+//! [`crate::numerics::lanes`]).
+//!
+//! # Choices, and what they were measured to do
+//! Mean step attempts a descent at a worst error of 1e-6 over members of the default study, or the speed
+//! of one thread with AVX-512, side by side in one run; rounded.
+//! - **Rodas4P2 in slow variables**: 42 attempts of six stages in the dynamic model, 34 in the quasi-steady.
+//!   The analytic Jacobian is eliminated by hand (see `dynamic.rs`), a solve costs thirty
+//!   multiply-adds. In the quasi-steady model order 4 is the limit: cost per digit does not change with the
+//!   weights any more; an explicit method of order 5 or more is the next thing to try there.
+//! - **The error norm** weighs states by what they do to the outcomes: a sixth fewer attempts than equal
+//!   relative weights at the same error.
+//! - **Growth aimed at 0.85**: 2 % of attempts rejected. A predictive controller gave a tenth more error
+//!   at equal cost.
+//! - **Peaks** from the dense output's derivative of the stiff variable: with the right-hand side's they
+//!   were wrong by up to 18 % in runs that do not deploy, now by 2e-5 at worst.
+//! - **Two registers side by side** in a group: 1.13 × in the dynamic model, 1.43 × in the quasi-steady; a
+//!   stage is a chain of dependent operations, and the second group fills its waits.
+//! - **One division for several reciprocals**, and a step-size rule without roots: 1.09 × and 1.10 ×.
+//! - AVX2 reaches 0.7 of AVX-512, 32 to 34 % of whose multiply-add peak the dynamic kernel uses.
 
 mod clock;
 mod constants;
@@ -6,12 +29,14 @@ mod dispatch;
 mod dynamic;
 #[cfg(test)]
 mod equations_test;
-mod kernel;
+mod group;
 mod model;
 mod observables;
 mod quasi_steady;
+mod queue;
 pub mod rosenbrock;
 mod settings;
+pub(super) mod tangents;
 mod thermal;
 
 pub use dispatch::InstructionSet;

@@ -26,36 +26,34 @@ use crate::descent::model::Model as Kind;
 use crate::numerics::elementary;
 use crate::numerics::lanes::Lanes;
 
-/// How a lane starts.
-pub struct Start<const N: usize> {
-    /// State.
-    pub state: [f64; N],
-    /// First step to try, in the clock.
-    pub step: f64,
-    /// Whether the clock is line length from the start.
-    pub in_length: bool,
-}
-
 /// A model as the kernel's loop drives it. The first state variable is line length, the last is time.
 pub trait Model<V: Lanes, const N: usize>: System<V, N> {
     /// Which model.
     const KIND: Kind;
     /// Where the temperatures begin in the state.
     const FLUID: usize;
-    /// All lanes with the same constants.
-    fn new(constants: &Constants<f64>) -> Self;
+    /// Whether line length is the clock from the start.
+    const IN_LENGTH: bool;
+    /// The model with the lanes' constants.
+    fn new(constants: Constants<V>) -> Self;
     /// The lanes' constants.
     fn constants(&mut self) -> &mut Constants<V>;
     /// The lanes' clocks.
-    fn clock(&mut self) -> &mut Clock<V>;
+    fn clock(&self) -> &Clock<V>;
+    /// Sets the lanes' clocks.
+    fn set_clock(&mut self, clock: Clock<V>);
     /// Says whether any lane's fluid thins with shear.
     fn set_any_cross(&mut self, any: bool);
-    /// The start of a descent.
-    fn start(constants: &Constants<f64>) -> Start<N>;
+    /// The state at the start of descents with these constants.
+    fn start<T: Lanes>(constants: &Constants<T>) -> [T; N];
+    /// The first step to try, in the clock.
+    fn first_step(constants: &Constants<f64>) -> f64;
     /// Relative velocity at a moment.
     fn velocity(moment: &Self::Moment) -> V;
-    /// The force not yet balanced, over the load.
-    fn imbalance(moment: &Self::Moment) -> V;
+    /// Time per clock at a moment.
+    fn rate(moment: &Self::Moment) -> V;
+    /// Whether the force not yet balanced is below a share of the load.
+    fn settled(moment: &Self::Moment, share: V) -> V::Mask;
     /// Observables at a moment.
     fn observe(&self, y: &[V; N], moment: &Self::Moment) -> [V; OBSERVABLES];
     /// Their derivatives in time, given that of the stiff variable.
@@ -85,35 +83,46 @@ impl<V: Lanes> Model<V, { dynamic::STATES }> for Dynamic<V> {
     const KIND: Kind = Kind::Dynamic;
     const FLUID: usize = 3;
 
-    fn new(constants: &Constants<f64>) -> Self {
-        let zero = V::splat(0.0);
-        let clock = Clock { length: zero, time: V::splat(1.0) };
-        Dynamic { constants: Constants::splat(constants), clock, any_cross: false }
+    const IN_LENGTH: bool = false;
+
+    #[inline(always)]
+    fn new(constants: Constants<V>) -> Self {
+        let clock = Clock { length: V::splat(0.0), time: V::splat(1.0) };
+        Dynamic { constants, clock, any_cross: false }
     }
     #[inline(always)]
     fn constants(&mut self) -> &mut Constants<V> {
         &mut self.constants
     }
     #[inline(always)]
-    fn clock(&mut self) -> &mut Clock<V> {
-        &mut self.clock
+    fn clock(&self) -> &Clock<V> {
+        &self.clock
+    }
+    #[inline(always)]
+    fn set_clock(&mut self, clock: Clock<V>) {
+        self.clock = clock;
     }
     fn set_any_cross(&mut self, any: bool) {
         self.any_cross = any;
     }
 
-    /// At rest on the line. The first step is a fraction of the fast time constant
-    /// `(M η (1 − η) + J/p)/κ`, or of the time that the load alone would need for the whole line.
-    fn start(k: &Constants<f64>) -> Start<{ dynamic::STATES }> {
+    /// At rest on the line, both bodies rising.
+    #[inline(always)]
+    fn start<T: Lanes>(k: &Constants<T>) -> [T; dynamic::STATES] {
+        let (zero, warm) = (T::splat(0.0), k.initial_temperature);
+        [zero, k.rise_speed, zero, warm, warm, warm, zero]
+    }
+
+    /// A fraction of the fast time constant `(M η (1 − η) + J/p)/κ`, or of the time that the load alone
+    /// would need for the whole line.
+    fn first_step(k: &Constants<f64>) -> f64 {
         let warm = k.initial_temperature;
         let thickening = elementary::exp(-k.minus_viscosity_temperature / warm);
         let p = k.full_radius_squared;
         let mass = k.total_mass * k.payload_share * (1.0 - k.payload_share) + k.inertia / p;
         let relaxation = mass * p / (k.torque * thickening);
         let free_fall = (k.length * mass / k.weight).sqrt();
-        let step = 0.3 * if relaxation < free_fall { relaxation } else { 0.1 * free_fall };
-        let state = [0.0, k.rise_speed, 0.0, warm, warm, warm, 0.0];
-        Start { state, step, in_length: false }
+        0.3 * if relaxation < free_fall { relaxation } else { 0.1 * free_fall }
     }
 
     #[inline(always)]
@@ -121,8 +130,12 @@ impl<V: Lanes> Model<V, { dynamic::STATES }> for Dynamic<V> {
         moment.v
     }
     #[inline(always)]
-    fn imbalance(moment: &dynamic::Moment<V>) -> V {
-        moment.force.abs() / moment.load
+    fn rate(moment: &dynamic::Moment<V>) -> V {
+        moment.rates[6]
+    }
+    #[inline(always)]
+    fn settled(moment: &dynamic::Moment<V>, share: V) -> V::Mask {
+        moment.force.abs().lt(share * moment.load)
     }
     #[inline(always)]
     fn observe(&self, y: &[V; 7], moment: &dynamic::Moment<V>) -> [V; OBSERVABLES] {
@@ -138,17 +151,17 @@ impl<V: Lanes> Model<V, { dynamic::STATES }> for Dynamic<V> {
         let k = &self.constants;
         let e = &step.error;
         let m = &step.moment;
-        let remaining = k.length - step.state[0];
-        let total = step.state[6] + remaining / m.v;
-        let b = m.velocity_per_kelvin();
-        let late = nearness(step.state[0] / k.length);
-        let pull = V::splat(0.3).mul_add(late, V::splat(0.01));
-        let time = e[6].abs() / total;
-        let line = e[0].abs() / k.length;
-        let heat = b * heat(late, e[3], e[4]);
-        let centre = V::splat(0.3) * e[1].abs() * m.drag_per_load();
-        let brake = pull * e[2].abs() / m.load;
-        ((time + line) + heat) + (centre + brake)
+        let [line, .., time] = step.state;
+        let late = nearness(line * k.inverse_length);
+        // Over the total time as estimated from here, t + (L − l)/v, and over the load; one division.
+        let total = time.mul_add(m.v, k.length - line);
+        let shared = V::splat(1.0) / (total * m.load);
+        let time = (e[6].abs() * m.v) * (shared * m.load);
+        let brake = V::splat(0.3).mul_add(late, V::splat(0.01)) * e[2].abs();
+        let centre = V::splat(0.3) * e[1].abs();
+        let force = centre.mul_add(m.drag_share(), brake) * (shared * total);
+        let heat = m.velocity_per_kelvin() * heat(late, e[3], e[4]);
+        e[0].abs().mul_add(k.inverse_length, time) + (heat + force)
     }
 }
 
@@ -156,35 +169,54 @@ impl<V: Lanes> Model<V, { quasi_steady::STATES }> for QuasiSteady<V> {
     const KIND: Kind = Kind::QuasiSteady;
     const FLUID: usize = 1;
 
-    fn new(constants: &Constants<f64>) -> Self {
-        let zero = V::splat(0.0);
-        let clock = Clock { length: V::splat(1.0), time: zero };
-        QuasiSteady { constants: Constants::splat(constants), clock, any_cross: false }
+    const IN_LENGTH: bool = true;
+
+    #[inline(always)]
+    fn new(constants: Constants<V>) -> Self {
+        let clock = Clock { length: V::splat(1.0), time: V::splat(0.0) };
+        QuasiSteady { constants, clock, any_cross: false }
     }
     #[inline(always)]
     fn constants(&mut self) -> &mut Constants<V> {
         &mut self.constants
     }
     #[inline(always)]
-    fn clock(&mut self) -> &mut Clock<V> {
-        &mut self.clock
+    fn clock(&self) -> &Clock<V> {
+        &self.clock
+    }
+    #[inline(always)]
+    fn set_clock(&mut self, clock: Clock<V>) {
+        self.clock = clock;
     }
     fn set_any_cross(&mut self, any: bool) {
         self.any_cross = any;
     }
 
-    fn start(k: &Constants<f64>) -> Start<{ quasi_steady::STATES }> {
-        let warm = k.initial_temperature;
-        let state = [0.0, warm, warm, warm, 0.0];
-        Start { state, step: 0.01 * k.length, in_length: true }
+    #[inline(always)]
+    fn start<T: Lanes>(k: &Constants<T>) -> [T; quasi_steady::STATES] {
+        let (zero, warm) = (T::splat(0.0), k.initial_temperature);
+        [zero, warm, warm, warm, zero]
+    }
+    /// A fraction of the way made while the fluid's temperature relaxes: a longer one can hide from the
+    /// error estimate.
+    fn first_step(k: &Constants<f64>) -> f64 {
+        let thickening = elementary::exp(-k.minus_viscosity_temperature / k.initial_temperature);
+        let velocity = k.full_radius_squared * k.weight / (k.torque * thickening);
+        let way = 0.25 * velocity / (k.fluid_rotor_1 + k.fluid_housing_1);
+        let most = 0.01 * k.length;
+        if way > 0.0 && way < most { way } else { most }
     }
     #[inline(always)]
     fn velocity(moment: &quasi_steady::Moment<V>) -> V {
         moment.v
     }
     #[inline(always)]
-    fn imbalance(_: &quasi_steady::Moment<V>) -> V {
-        V::splat(0.0)
+    fn rate(moment: &quasi_steady::Moment<V>) -> V {
+        moment.rates[4]
+    }
+    #[inline(always)]
+    fn settled(moment: &quasi_steady::Moment<V>, _: V) -> V::Mask {
+        moment.v.le(moment.v)
     }
     #[inline(always)]
     fn observe(&self, y: &[V; 5], moment: &quasi_steady::Moment<V>) -> [V; OBSERVABLES] {
@@ -199,13 +231,11 @@ impl<V: Lanes> Model<V, { quasi_steady::STATES }> for QuasiSteady<V> {
         let k = &self.constants;
         let e = &step.error;
         let m = &step.moment;
-        let remaining = k.length - step.state[0];
-        let total = step.state[4] + remaining / m.v;
-        let late = nearness(step.state[0] / k.length);
-        let b = m.velocity_per_kelvin();
-        let time = V::splat(2.0) * e[4].abs() / total;
-        let line = e[0].abs() / k.length;
-        let heat = b * heat(late, e[1], e[2]);
-        (time + line) + heat
+        let [line, .., time] = step.state;
+        let late = nearness(line * k.inverse_length);
+        let total = time.mul_add(m.v, k.length - line);
+        let time = V::splat(2.0) * (e[4].abs() * m.v) / total;
+        let heat = m.velocity_per_kelvin() * heat(late, e[1], e[2]);
+        e[0].abs().mul_add(k.inverse_length, time) + heat
     }
 }

@@ -28,7 +28,7 @@ pub struct Peaks<V> {
     step: V,
     start_rate: V,
     clock: Clock<V>,
-    /// Derivative of the stiff variable in the step's θ at its end.
+    /// Derivative of the stiff variable in the clock at the step's end.
     stiff: V,
 }
 
@@ -57,7 +57,7 @@ impl<V: Lanes> Peaks<V> {
     }
 
     /// Notes a step: its size (0 where not accepted), its clock, the time per clock at its start, the
-    /// observables' derivatives in time there, and the stiff variable's in θ at the end.
+    /// observables' derivatives in time there, and the stiff variable's in the clock at the end.
     #[inline(always)]
     pub fn stepped(
         &mut self,
@@ -77,7 +77,7 @@ impl<V: Lanes> Peaks<V> {
     /// Derivative in time of the stiff variable at the step's end, where the relative velocity is `v`.
     #[inline(always)]
     pub fn stiff_rate(&self, v: V) -> V {
-        self.stiff * self.clock.pace(v) / self.step
+        self.stiff * self.clock.pace(v)
     }
 
     /// Takes in the values where the step ended, with their derivatives in time there.

@@ -102,13 +102,19 @@ impl<V: Lanes> System<V, STATES> for QuasiSteady<V> {
     }
 
     #[inline(always)]
-    fn factor(&self, _: &[V; STATES], m: &Moment<V>, h_gamma: V) -> Factored<V> {
+    fn factor(
+        &self,
+        _: &[V; STATES],
+        m: &Moment<V>,
+        h_gamma: V,
+        inverse_h_gamma: V,
+    ) -> Factored<V> {
         let k = &self.constants;
         let one = V::splat(1.0);
         let alpha = self.clock.length;
         let pace = self.clock.pace(m.v);
         let [line_rate, fluid_rate, rotor_rate, housing_rate, g] = m.rates;
-        let c = pace / h_gamma;
+        let c = pace * inverse_h_gamma;
         let eps = k.averaging_offset;
         let cofactors = thermal::cofactors(k, c, V::splat(0.0));
         let joint = one / (c * cofactors.determinant);

@@ -80,8 +80,15 @@ pub trait System<V: Lanes, const N: usize> {
     fn moment(&self, y: &[V; N]) -> Self::Moment;
     /// The right-hand side's value.
     fn rates(moment: &Self::Moment) -> [V; N];
-    /// Prepares the solution of `(I/hγ − J) u = r` at the state `y` with its moment.
-    fn factor(&self, y: &[V; N], moment: &Self::Moment, h_gamma: V) -> Self::Factored;
+    /// Prepares the solution of `(I/hγ − J) u = r` at the state `y` with its moment, given `hγ` and its
+    /// reciprocal.
+    fn factor(
+        &self,
+        y: &[V; N],
+        moment: &Self::Moment,
+        h_gamma: V,
+        inverse_h_gamma: V,
+    ) -> Self::Factored;
     /// Solves `(I/hγ − J) u = r`.
     fn solve(factored: &Self::Factored, r: &[V; N]) -> [V; N];
 }
@@ -94,7 +101,7 @@ pub struct Step<M, V, const N: usize> {
     pub error: [V; N],
     /// The moment at the embedded method's result, a local error away from `state`.
     pub moment: M,
-    /// Derivatives of the stiff component in θ at the step's start and end.
+    /// Derivatives of the stiff component in the clock at the step's start and end.
     pub slopes: [V; 2],
 }
 
@@ -106,8 +113,9 @@ pub fn step<V: Lanes, S: System<V, N>, const N: usize>(
     moment: &S::Moment,
     h: V,
 ) -> Step<S::Moment, V, N> {
-    let factored = system.factor(y, moment, h * V::splat(GAMMA));
     let inverse_h = V::splat(1.0) / h;
+    let inverse_h_gamma = V::splat(1.0 / GAMMA) * inverse_h;
+    let factored = system.factor(y, moment, h * V::splat(GAMMA), inverse_h_gamma);
     let mut u = [[V::splat(0.0); N]; STAGES];
     u[0] = S::solve(&factored, &S::rates(moment));
     let mut argument: [V; N];
@@ -142,6 +150,7 @@ pub fn step<V: Lanes, S: System<V, N>, const N: usize>(
         slopes[0] = u[j][stiff].mul_add(V::splat(DENSE[0][j]), slopes[0]);
         slopes[1] = u[j][stiff].neg_mul_add(V::splat(DENSE[1][j]), slopes[1]);
     }
+    let slopes = [slopes[0] * inverse_h, slopes[1] * inverse_h];
     Step { state: argument, error, moment: last, slopes }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::campaign::Record;
 use crate::error::Result;
-use crate::findings::CONFIDENCE;
+use crate::findings::{CONFIDENCE, sequence};
 use crate::reliability::probability::Proportion;
 use crate::reliability::replicates::from_replicate_counts;
 use crate::study::Study;
@@ -18,7 +18,11 @@ const FIRST: u64 = 100;
 pub struct Convergence {
     /// The largest probability that the requirement allows.
     pub allowed: Option<f64>,
-    /// How the intervals were made.
+    /// Confidence of the intervals.
+    pub confidence: f64,
+    /// Whether they hold at every number of samples at once, or each as if its number had been fixed.
+    pub at_every_look: bool,
+    /// How they were made.
     pub method: String,
     /// The estimate after so many samples, in their order.
     pub checkpoints: Vec<Checkpoint>,
@@ -31,7 +35,7 @@ pub struct Checkpoint {
     pub samples: u64,
     /// The estimate.
     pub probability: f64,
-    /// Its interval, as if this had been the number of samples from the beginning.
+    /// Its interval.
     pub interval: Option<(f64, f64)>,
 }
 
@@ -57,7 +61,10 @@ pub(super) fn convergence(study: &Study, record: &Record) -> Result<Option<Conve
         if next.next_if_eq(&(k as u64 + 1)).is_none() {
             continue;
         }
-        let (probability, interval) = if replicates == 1 {
+        let (probability, interval) = if let Some(plan) = &study.sampling.stopping {
+            let interval = sequence::together(study, plan, counts[0], plan.confidence)?;
+            (counts[0].estimate(), interval)
+        } else if replicates == 1 {
             (counts[0].estimate(), counts[0].interval(CONFIDENCE)?)
         } else {
             let estimate = from_replicate_counts(&counts, CONFIDENCE)?.probability;
@@ -73,7 +80,14 @@ pub(super) fn convergence(study: &Study, record: &Record) -> Result<Option<Conve
         }));
     }
     let allowed = study.requirement.map(|requirement| 1.0 - requirement.reliability);
-    Ok(Some(Convergence { allowed, method, checkpoints }))
+    let stopping = &study.sampling.stopping;
+    Ok(Some(Convergence {
+        allowed,
+        confidence: stopping.as_ref().map_or(CONFIDENCE, |plan| plan.confidence),
+        at_every_look: stopping.is_some(),
+        method,
+        checkpoints,
+    }))
 }
 
 /// Whole multiples of `replicates`, evenly spaced in the logarithm, and the total.

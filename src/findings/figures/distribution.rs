@@ -44,8 +44,8 @@ pub struct Distribution {
     pub outside: (u64, u64),
     /// The probability of lying beyond a value, on the breaching side, from the clean side on.
     pub exceedance: Vec<Exceedance>,
-    /// Half-width of the band that holds the whole distribution at once; `None` if the samples are not
-    /// independent.
+    /// Half-width of the band that holds the whole distribution at once; `None` if that is
+    /// not known.
     pub simultaneous_half_width: Option<f64>,
     /// Why the exceedance has no intervals, if it has none.
     pub why_no_interval: Option<&'static str>,
@@ -108,7 +108,14 @@ fn distribution(study: &Study, record: &Record, i: usize) -> Result<Option<Distr
         counts.reverse();
         outside = (over, under);
     }
-    let independent = record.by_replicate().is_empty();
+    let why_no_interval = if !record.by_replicate().is_empty() {
+        Some("the points of a replicated design are not independent")
+    } else if study.sampling.stopping.is_some() {
+        Some("the number of samples was decided while looking at them")
+    } else {
+        None
+    };
+    let earned = why_no_interval.is_none();
     // The tail is followed to the limit even where no sample went.
     let end = (to.max(bin(last) + 1).min(to + BINS as i64)).max(2);
     let stations = (from.min(-1) * STATIONS_PER_BIN)..=(end * STATIONS_PER_BIN);
@@ -117,7 +124,7 @@ fn distribution(study: &Study, record: &Record, i: usize) -> Result<Option<Distr
             let e = k as f64 * width / STATIONS_PER_BIN as f64;
             let count = beyond.len() - beyond.partition_point(|&x| x <= e);
             let counts = Proportion::new(count as u64, faults, samples + faults)?;
-            let interval = match independent {
+            let interval = match earned {
                 true => counts.interval(CONFIDENCE)?.interval().map(|i| (i.lower, i.upper)),
                 false => None,
             };
@@ -137,9 +144,8 @@ fn distribution(study: &Study, record: &Record, i: usize) -> Result<Option<Distr
         counts,
         outside,
         exceedance,
-        simultaneous_half_width: (independent && faults == 0).then_some(half_width),
-        why_no_interval: (!independent)
-            .then_some("the points of a replicated design are not independent"),
+        simultaneous_half_width: (earned && faults == 0).then_some(half_width),
+        why_no_interval,
     }))
 }
 

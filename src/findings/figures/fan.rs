@@ -17,7 +17,7 @@ const TOLERANCE: f64 = 1e-4;
 /// Fine enough to interpolate in, s.
 const LONGEST_STEP_S: f64 = 2.0;
 /// The levels of the quantiles.
-pub const LEVELS: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
+const LEVELS: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 
 /// Quantile bands of trajectories, SI.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -39,7 +39,7 @@ pub struct Fan {
 pub struct FanBand {
     /// Time (s) or line paid out (m).
     pub abscissa: Vec<f64>,
-    /// The quantiles at each place, in the order of [`LEVELS`]; `None` where no descent came.
+    /// The quantiles at each place, at levels 5, 25, 50, 75 and 95 %; `None` where no descent came.
     pub quantiles: Vec<Option<[f64; 5]>>,
     /// The nominal descent.
     pub nominal: Vec<Option<f64>>,
@@ -81,9 +81,9 @@ pub(super) fn fan(study: &Study) -> Result<Fan> {
         let quantiles = (0..STATIONS)
             .map(|k| quantiles(paths.iter().filter_map(|path| path[k]).collect()))
             .collect();
-        let nominal = nominal.as_ref().map_or(vec![None; STATIONS], |t| {
-            readings(&t.samples, &abscissa, hold, at, read)
-        });
+        let nominal = nominal
+            .as_ref()
+            .map_or(vec![None; STATIONS], |t| readings(&t.samples, &abscissa, hold, at, read));
         FanBand { abscissa, quantiles, nominal }
     };
     Ok(Fan {

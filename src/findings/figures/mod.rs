@@ -15,7 +15,7 @@ use serde::Serialize;
 
 pub use convergence::{Checkpoint, Convergence};
 pub use distribution::{Distribution, Exceedance};
-pub use fan::{Fan, FanBand, LEVELS};
+pub use fan::{Fan, FanBand};
 pub use interaction::{Interaction, InteractionInput};
 pub use paper::{ConstantTemperature, PaperRuns, paper_runs};
 

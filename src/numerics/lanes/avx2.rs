@@ -3,7 +3,7 @@
 //! Every method is inlined into a kernel that was entered through a function with
 //! `#[target_feature(enable = "avx2,fma")]`; nothing else may call them.
 
-use super::scalar::{ONE_BITS, SQRT_HALF_BITS, TWO_52_AND_BIAS, TWO_52_BITS};
+use super::scalar::{FOURTH_ROOT_BITS, ONE_BITS, SQRT_HALF_BITS, TWO_52_AND_BIAS, TWO_52_BITS};
 use super::{Lanes, Mask};
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -112,6 +112,14 @@ unsafe impl Lanes for Quartet {
     #[inline(always)]
     fn select(mask: QuartetMask, this: Self, other: Self) -> Self {
         Quartet(unsafe { _mm256_blendv_pd(other.0, this.0, mask.0) })
+    }
+    #[inline(always)]
+    fn inverse_fourth_root_estimate(self) -> Self {
+        unsafe {
+            let quarter = _mm256_srli_epi64::<2>(_mm256_castpd_si256(self.0));
+            let whole = _mm256_set1_epi64x(FOURTH_ROOT_BITS as i64);
+            Quartet(_mm256_castsi256_pd(_mm256_sub_epi64(whole, quarter)))
+        }
     }
     #[inline(always)]
     fn power_of_two(self) -> Self {

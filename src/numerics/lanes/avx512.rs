@@ -3,7 +3,7 @@
 //! Every method is inlined into a kernel that was entered through a function with
 //! `#[target_feature(enable = "avx512f,avx512dq")]`; nothing else may call them.
 
-use super::scalar::{ONE_BITS, SQRT_HALF_BITS, TWO_52_AND_BIAS, TWO_52_BITS};
+use super::scalar::{FOURTH_ROOT_BITS, ONE_BITS, SQRT_HALF_BITS, TWO_52_AND_BIAS, TWO_52_BITS};
 use super::{Lanes, Mask};
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -103,6 +103,14 @@ unsafe impl Lanes for Octet {
     #[inline(always)]
     fn select(mask: __mmask8, this: Self, other: Self) -> Self {
         Octet(unsafe { _mm512_mask_blend_pd(mask, other.0, this.0) })
+    }
+    #[inline(always)]
+    fn inverse_fourth_root_estimate(self) -> Self {
+        unsafe {
+            let quarter = _mm512_srli_epi64::<2>(_mm512_castpd_si512(self.0));
+            let whole = _mm512_set1_epi64(FOURTH_ROOT_BITS as i64);
+            Octet(_mm512_castsi512_pd(_mm512_sub_epi64(whole, quarter)))
+        }
     }
     #[inline(always)]
     fn power_of_two(self) -> Self {

@@ -1,4 +1,7 @@
-//! `exp` and `ln` over lanes, within one unit in the last place, the same bits in every lane type.
+//! `exp` and `ln` over lanes, the same bits in every lane type; over one `f64` these are the scalar forms.
+//!
+//! Worst errors found against twice the precision (`tests/truth/vector_elementary.rs`, four million points
+//! each and every end of a reduction interval): `exp` 0.78, `ln` 0.84 units in the last place.
 
 use super::{Lanes, MAGIC};
 
@@ -72,4 +75,13 @@ pub fn ln<V: Lanes>(x: V) -> V {
     let half_square = V::splat(0.5) * f * f;
     let tail = s.mul_add(s2.mul_add(r, half_square), k * V::splat(LN_2_LOW));
     k.mul_add(V::splat(LN_2_HIGH), f - (half_square - tail))
+}
+
+/// The reciprocal of the fourth root of a positive normal number, to 0.3 %: what a step size needs, at an
+/// eighth of the cost of two square roots and a division.
+#[inline(always)]
+pub fn inverse_fourth_root<V: Lanes>(x: V) -> V {
+    let y = x.inverse_fourth_root_estimate();
+    let square = y * y;
+    y * (V::splat(0.25) * x).neg_mul_add(square * square, V::splat(1.25))
 }

@@ -16,9 +16,11 @@ pub mod avx512;
 pub mod elementary;
 mod pair;
 mod scalar;
+mod tangent;
 
 pub use pair::Pair;
 use std::ops::{Add, Div, Mul, Neg, Sub};
+pub use tangent::Tangent;
 
 /// The magic number 1.5 · 2⁵²: adding it rounds a small number to a whole one, which then stands in the
 /// low bits of the sum.
@@ -44,7 +46,7 @@ pub trait Mask: Copy {
 /// Several `f64` side by side.
 ///
 /// # Safety
-/// An implementor is exactly `WIDTH` consecutive `f64` in memory, lane 0 first.
+/// An implementor begins with `WIDTH` consecutive `f64` in memory, lane 0 first.
 pub unsafe trait Lanes:
     Copy
     + Add<Output = Self>
@@ -60,6 +62,11 @@ pub unsafe trait Lanes:
 
     /// The same value in every lane.
     fn splat(value: f64) -> Self;
+    /// The values without derivatives, for lanes that carry any.
+    #[inline(always)]
+    fn detached(self) -> Self {
+        self
+    }
     /// `self · factor + term`, rounded once.
     fn mul_add(self, factor: Self, term: Self) -> Self;
     /// `term − self · factor`, rounded once.
@@ -78,6 +85,9 @@ pub unsafe trait Lanes:
     fn le(self, other: Self) -> Self::Mask;
     /// `self` where the mask is true, `other` elsewhere.
     fn select(mask: Self::Mask, this: Self, other: Self) -> Self;
+    /// Roughly `self^(−1/4)`, to 4 %, for a positive normal number: a quarter of the exponent, and the
+    /// mantissa for what it is. See [`elementary::inverse_fourth_root`].
+    fn inverse_fourth_root_estimate(self) -> Self;
     /// `2^k`, where `self` is `k` + [`MAGIC`] with −1022 ≤ k ≤ 1023.
     fn power_of_two(self) -> Self;
     /// A positive normal number as `(k, z)` with `self = 2^k z` and `z` in [√½, √2).
@@ -86,13 +96,13 @@ pub unsafe trait Lanes:
     /// The lanes as a slice.
     #[inline(always)]
     fn lanes(&self) -> &[f64] {
-        // SAFETY: an implementor is WIDTH consecutive f64 (the trait's contract).
+        // SAFETY: an implementor begins with WIDTH consecutive f64 (the trait's contract).
         unsafe { std::slice::from_raw_parts((self as *const Self).cast::<f64>(), Self::WIDTH) }
     }
     /// The lanes as a slice that can be written.
     #[inline(always)]
     fn lanes_mut(&mut self) -> &mut [f64] {
-        // SAFETY: an implementor is WIDTH consecutive f64 (the trait's contract).
+        // SAFETY: an implementor begins with WIDTH consecutive f64 (the trait's contract).
         unsafe { std::slice::from_raw_parts_mut((self as *mut Self).cast::<f64>(), Self::WIDTH) }
     }
 }

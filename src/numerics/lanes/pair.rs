@@ -102,6 +102,10 @@ unsafe impl<V: Lanes> Lanes for Pair<V> {
         Pair(V::select(mask.0, this.0, other.0), V::select(mask.1, this.1, other.1))
     }
     #[inline(always)]
+    fn inverse_fourth_root_estimate(self) -> Self {
+        Pair(self.0.inverse_fourth_root_estimate(), self.1.inverse_fourth_root_estimate())
+    }
+    #[inline(always)]
     fn power_of_two(self) -> Self {
         Pair(self.0.power_of_two(), self.1.power_of_two())
     }

@@ -30,6 +30,9 @@ pub(super) const TWO_52_AND_BIAS: f64 = 4_503_599_627_370_496.0 + 1023.0;
 /// The bits of 1.0: the exponent's bias in place.
 pub(super) const ONE_BITS: u64 = 0x3ff0_0000_0000_0000;
 
+/// Five quarters of the exponent's bias, less what makes the estimate of the inverse fourth root best.
+pub(super) const FOURTH_ROOT_BITS: u64 = 0x4feb_07ae_147a_e000;
+
 // SAFETY: an f64 is one f64.
 unsafe impl Lanes for f64 {
     const WIDTH: usize = 1;
@@ -74,6 +77,10 @@ unsafe impl Lanes for f64 {
     #[inline(always)]
     fn select(mask: bool, this: Self, other: Self) -> Self {
         if mask { this } else { other }
+    }
+    #[inline(always)]
+    fn inverse_fourth_root_estimate(self) -> Self {
+        f64::from_bits(FOURTH_ROOT_BITS.wrapping_sub(self.to_bits() >> 2))
     }
     #[inline(always)]
     fn power_of_two(self) -> Self {

@@ -20,6 +20,10 @@ pub const METHODS: [Method; 6] = [
     Method::CrossEntropy,
 ];
 
+/// Columns of the certificate's data.
+pub const CSV_HEADER: &str =
+    "method,problem,probability,seeds,stated,held,below,mean_ratio,rms_relative_error,evaluations";
+
 /// One method's answer with its default options, save the seed and the effort: a share of the default
 /// samples of each method.
 pub fn answer(method: Method, benchmark: &Benchmark, seed: u64, effort: f64) -> Estimate {
@@ -63,6 +67,8 @@ pub fn answer(method: Method, benchmark: &Benchmark, seed: u64, effort: f64) -> 
 pub struct Coverage {
     pub method: Method,
     pub problem: &'static str,
+    /// The certified probability.
+    pub probability: f64,
     /// Seeds run.
     pub seeds: u64,
     /// Seeds that stated an interval.
@@ -104,6 +110,7 @@ impl Coverage {
         Coverage {
             method,
             problem: benchmark.id,
+            probability: truth,
             seeds,
             stated,
             held,
@@ -131,5 +138,44 @@ impl Coverage {
             Some(_) if 2 * self.stated < self.seeds => "holds where stated; mostly withdrawn",
             Some(_) => "holds",
         }
+    }
+
+    /// A row of the certificate's table.
+    pub fn markdown(&self) -> String {
+        let number = |x: Option<f64>| x.map_or("none".to_owned(), |x| format!("{x:.4}"));
+        let coverage = self.share().map_or("none".to_owned(), |(share, error)| {
+            format!("{:.1} ± {:.1} %", 100.0 * share, 100.0 * error)
+        });
+        format!(
+            "| {} | {:.4e} | {} | {} | {:.0} | {} of {} | {coverage} | {} / {} | {} |",
+            self.problem,
+            self.probability,
+            number(self.ratio),
+            number(self.relative_error),
+            self.evaluations,
+            self.stated,
+            self.seeds,
+            self.below,
+            self.stated - self.held - self.below,
+            self.verdict()
+        )
+    }
+
+    /// A row of the certificate's data, under [`CSV_HEADER`].
+    pub fn csv(&self) -> String {
+        let number = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x}"));
+        format!(
+            "{},{},{},{},{},{},{},{},{},{}",
+            self.method.name(),
+            self.problem,
+            self.probability,
+            self.seeds,
+            self.stated,
+            self.held,
+            self.below,
+            number(self.ratio),
+            number(self.relative_error),
+            self.evaluations
+        )
     }
 }

@@ -62,28 +62,6 @@ impl LimitState for Function {
     }
 }
 
-/// A system hidden behind the single margin of its event, as the collections publish it.
-pub struct AsOneMargin<'a>(pub &'a Benchmark);
-
-impl LimitState for AsOneMargin<'_> {
-    fn dimension(&self) -> usize {
-        self.0.limits.dimension
-    }
-
-    fn limits(&self) -> usize {
-        1
-    }
-
-    fn margins(&self, z: &Columns, margins: &mut Columns) -> Result<()> {
-        let mut all = Columns::new(z.rows(), self.0.limits.limits);
-        self.0.limits.margins(z, &mut all)?;
-        for k in 0..z.rows() {
-            margins.set(k, 0, self.0.event.margin(all.row(k).into_iter()));
-        }
-        Ok(())
-    }
-}
-
 /// Every problem.
 pub fn all() -> Vec<Benchmark> {
     let mut all = components::all();
@@ -92,11 +70,6 @@ pub fn all() -> Vec<Benchmark> {
     all.extend(oscillators::all());
     all.extend(dimensions::all());
     all
-}
-
-/// The problem of this identifier.
-pub fn named(id: &str) -> Benchmark {
-    all().into_iter().find(|benchmark| benchmark.id == id).expect("a known problem")
 }
 
 /// A component: one margin, certified to `relative_error`.

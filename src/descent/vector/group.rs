@@ -1,0 +1,229 @@
+//! Lanes that step, each at its own pace: one descent in each.
+
+use super::clock::Clock;
+use super::model::Model;
+use super::observables::{OBSERVABLES, Peaks};
+use super::rosenbrock;
+use crate::descent::outcome::{Fault, Outcome, TIME_LIMIT_S};
+use crate::numerics::lanes::elementary::inverse_fourth_root;
+use crate::numerics::lanes::{Lanes, Mask};
+
+/// Most step attempts of one descent: some hundred times what an ordinary one takes.
+const MOST_STEPS: f64 = 20_000.0;
+
+/// Smallest step, relative to where the clock stands.
+const FINEST: f64 = 1e-15;
+
+/// A step's growth aims at this share of the tolerance's fourth root; a larger one saves no steps, as more
+/// of them are rejected (0.85: 2 % rejected; 0.9: 5 %; 0.95: 14 %, and more steps in all).
+const SAFETY: f64 = 0.85;
+
+/// The clock changes to line length when the unbalanced force has fallen below this share of the load:
+/// after two or three fast time constants. Between 0.005 and 0.3 it makes no difference to cost or error.
+const SETTLED: f64 = 0.1;
+
+/// How a lane has finished: not yet, at the end of the line, at the time limit, or not at all.
+const RUNNING: f64 = 0.0;
+const DEPLOYED: f64 = 1.0;
+const LATE: f64 = 2.0;
+const MANY: f64 = -1.0;
+const SMALL: f64 = -2.0;
+
+/// Part of a descent that a lane is in.
+const STARTING: f64 = 0.0;
+/// In line length, to the end of the line.
+const PAYING_OUT: f64 = 1.0;
+/// In time again, to the time limit, because the line would not have ended before it.
+const RUNNING_LATE: f64 = 2.0;
+/// In line length for good: the line ends, by a hair, before the limit.
+const LANDING: f64 = 3.0;
+
+/// As many descents as there are lanes.
+pub struct Group<V, M, const N: usize> {
+    /// The lanes' equations.
+    pub model: M,
+    /// State.
+    pub state: [V; N],
+    /// Step to try next, in the clock.
+    pub step: V,
+    /// Part of the descent.
+    pub leg: V,
+    /// Step attempts so far.
+    pub attempts: V,
+    /// How the lane has finished, if it has.
+    finished: V,
+    peaks: Peaks<V>,
+    /// Observables at the state.
+    seen: [V; OBSERVABLES],
+    inverse_tolerance: V,
+}
+
+impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
+    /// Lanes that all stand at the same start.
+    #[inline(always)]
+    pub fn new(model: M, state: [V; N], step: V, local_tolerance: f64) -> Self {
+        let zero = V::splat(0.0);
+        Group {
+            model,
+            state,
+            step,
+            leg: V::splat(if M::IN_LENGTH { PAYING_OUT } else { STARTING }),
+            attempts: zero,
+            finished: zero,
+            peaks: Peaks::new(),
+            seen: [zero; OBSERVABLES],
+            inverse_tolerance: V::splat(1.0 / local_tolerance),
+        }
+    }
+
+    /// Puts one lane at the start of another descent; the model's constants are the caller's business.
+    pub fn restart(&mut self, lane: usize, state: &[f64; N], step: f64) {
+        for (variable, &value) in self.state.iter_mut().zip(state) {
+            variable.lanes_mut()[lane] = value;
+        }
+        self.step.lanes_mut()[lane] = step;
+        self.leg.lanes_mut()[lane] = if M::IN_LENGTH { PAYING_OUT } else { STARTING };
+        self.attempts.lanes_mut()[lane] = 0.0;
+        self.finished.lanes_mut()[lane] = RUNNING;
+        self.peaks.clear_lane(lane);
+    }
+
+    /// The lanes whose clock is line length.
+    #[inline(always)]
+    fn in_length(&self) -> V::Mask {
+        let leg = self.leg;
+        V::splat(0.5).lt(leg).and(leg.lt(V::splat(1.5))).or(V::splat(2.5).lt(leg))
+    }
+
+    /// Evaluates the right-hand side and takes in the observables where the lanes stand.
+    #[inline(always)]
+    pub fn look(&mut self) -> M::Moment {
+        let (zero, one) = (V::splat(0.0), V::splat(1.0));
+        let in_length = self.in_length();
+        self.model.set_clock(Clock {
+            length: V::select(in_length, one, zero),
+            time: V::select(in_length, zero, one),
+        });
+        let moment = self.model.moment(&self.state);
+        self.seen = self.model.observe(&self.state, &moment);
+        let velocity = M::velocity(&moment);
+        let slopes = self.model.observable_rates(&moment, self.peaks.stiff_rate(velocity));
+        self.peaks.arrive(velocity, &self.seen, &slopes);
+        moment
+    }
+
+    /// Bit `k` is set where lane `k` has finished.
+    #[inline(always)]
+    pub fn finished(&self) -> u32 {
+        V::splat(0.0).lt(self.finished.abs()).bits()
+    }
+
+    /// Tries one step in every lane from where it stands, whose moment is given. Bit `k` of the result is
+    /// set where lane `k` accepted it.
+    #[inline(always)]
+    pub fn advance(&mut self, moment: &M::Moment) -> u32 {
+        let (zero, one) = (V::splat(0.0), V::splat(1.0));
+        let limit = V::splat(TIME_LIMIT_S);
+        let (y, leg) = (&mut self.state, self.leg);
+        let in_length = V::splat(0.5).lt(leg).and(leg.lt(V::splat(1.5))).or(V::splat(2.5).lt(leg));
+
+        // The step: to the end of the interval if it is near, half-way if two steps reach it.
+        let length = self.model.constants().length;
+        let remaining = V::select(in_length, length - y[0], limit - y[N - 1]);
+        let half = V::splat(0.5) * remaining;
+        let wanted = self.step.min(half).detached();
+        let last = remaining.lt(self.step * V::splat(1.05));
+        let tried = V::select(last, remaining, wanted);
+
+        let step = rosenbrock::step(&self.model, y, moment, tried);
+        self.attempts = self.attempts + one;
+        let error = self.model.error(&step) * self.inverse_tolerance;
+        // The embedded method is of order 3. What is not a number counts as an error of 1e8.
+        let size = V::splat(1e-8).max(error.min(V::splat(1e8)));
+        let growth = V::splat(SAFETY) * inverse_fourth_root(size);
+        let growth = V::splat(0.2).max(V::splat(5.0).min(growth));
+        let good = error.le(one);
+
+        let over_line = in_length.not().and(length.le(step.state[0]));
+        let over_time = in_length.and(leg.lt(V::splat(2.5))).and(limit.le(step.state[N - 1]));
+        let accepted = good.and(over_line.not()).and(over_time.not());
+        let pace = self.model.clock().pace(M::velocity(moment));
+        let slopes = self.model.observable_rates(moment, step.slopes[0] * pace);
+        self.peaks.stepped(
+            V::select(accepted, tried, zero),
+            self.model.clock(),
+            M::rate(moment),
+            &slopes,
+            step.slopes[1],
+        );
+        for (old, &new) in y.iter_mut().zip(&step.state) {
+            *old = V::select(accepted, new, *old);
+        }
+        let arrived = accepted.and(last);
+        let how = V::select(in_length, V::splat(DEPLOYED), V::splat(LATE));
+        self.finished = V::select(arrived, how, self.finished);
+
+        let mut h = tried * V::select(good, growth, growth.min(V::splat(0.8)));
+        let settled =
+            accepted.and(leg.lt(V::splat(0.5))).and(M::settled(&step.moment, V::splat(SETTLED)));
+        let into_line = good.and(over_line);
+        let into_time = good.and(over_time);
+        h = V::select(settled, h * M::velocity(&step.moment), h);
+        h = V::select(into_line, length - y[0], h);
+        h = V::select(into_time, limit - y[N - 1], h);
+        self.step = h;
+        let late = V::splat(1.5).lt(leg);
+        let to_the_end = V::select(late, V::splat(LANDING), V::splat(PAYING_OUT));
+        let leg = V::select(settled, V::splat(PAYING_OUT), leg);
+        let leg = V::select(into_line, to_the_end, leg);
+        self.leg = V::select(into_time, V::splat(RUNNING_LATE), leg);
+
+        let position = V::select(in_length, y[0], y[N - 1]).abs();
+        let tiny = position.mul_add(V::splat(FINEST), V::splat(f64::MIN_POSITIVE));
+        let many = V::splat(MOST_STEPS).le(self.attempts);
+        let stuck = tiny.lt(h).not().or(many).and(arrived.not());
+        if stuck.any() {
+            let fault = V::select(many, V::splat(MANY), V::splat(SMALL));
+            self.finished = V::select(stuck, fault, self.finished);
+        }
+        accepted.bits()
+    }
+
+    /// Time, velocity, the five peaks and the three temperatures, in the order of
+    /// [`Outcome::values`].
+    #[inline(always)]
+    pub fn outcomes(&self) -> [V; 10] {
+        let top = &self.peaks.values;
+        let heat = M::FLUID;
+        // A run in line length may land by a rounding beyond the limit; one in time ends on it.
+        let limit = V::splat(TIME_LIMIT_S);
+        let time = self.state[N - 1].min(limit);
+        [
+            V::select(self.finished.lt(V::splat(1.5)), time, limit),
+            self.seen[4],
+            top[0],
+            top[1],
+            top[2].sqrt(),
+            top[3],
+            top[4],
+            self.state[heat],
+            self.state[heat + 1],
+            self.state[heat + 2],
+        ]
+    }
+
+    /// What became of a lane that has finished.
+    pub fn result(&self, lane: usize) -> Result<Outcome, Fault> {
+        let values = self.outcomes().map(|value| value.lanes()[lane]);
+        let how = self.finished.lanes()[lane];
+        if !values.iter().all(|value| value.is_finite()) {
+            Err(Fault::NotFinite)
+        } else if how == MANY {
+            Err(Fault::TooManySteps)
+        } else if how == SMALL {
+            Err(Fault::StepTooSmall)
+        } else {
+            Ok(Outcome { deployed: how == DEPLOYED, values })
+        }
+    }
+}

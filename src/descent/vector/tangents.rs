@@ -1,0 +1,62 @@
+//! The kernel differentiated: one descent, with the derivatives of its outcomes along several directions.
+
+use super::constants::Constants;
+use super::dynamic::Dynamic;
+use super::group::Group;
+use super::model::Model;
+use super::quasi_steady::QuasiSteady;
+use super::settings::Settings;
+use crate::descent::model::Model as Kind;
+use crate::descent::outcome::{Fault, OUTCOME_COUNT, Outcome};
+use crate::numerics::dual::Dual;
+use crate::numerics::lanes::Tangent;
+use crate::physics::Coefficients;
+
+/// Directions of one pass, as many as are worth one integration.
+pub const DIRECTIONS: usize = 8;
+
+/// An outcome, and the derivatives of each of its quantities along the directions.
+pub type Derivatives = (Outcome, [[f64; DIRECTIONS]; OUTCOME_COUNT]);
+
+/// Integrates one descent with derivatives. The values are those of the plain kernel to the bit; step
+/// sizes are taken as constants, so that the derivatives are those of the sequence of steps, as accurate as
+/// the steps themselves.
+///
+/// # Errors
+/// The fault of the descent.
+pub fn differentiate(
+    model: Kind,
+    settings: &Settings,
+    coefficients: &Coefficients<Dual<DIRECTIONS>>,
+    plain: &Coefficients<f64>,
+) -> Result<Derivatives, Fault> {
+    type Lane = Tangent<DIRECTIONS>;
+    match model {
+        Kind::Dynamic => run::<Dynamic<Lane>, 7>(settings, coefficients, plain),
+        Kind::QuasiSteady => run::<QuasiSteady<Lane>, 5>(settings, coefficients, plain),
+    }
+}
+
+#[inline(always)]
+fn run<M: Model<Tangent<DIRECTIONS>, N>, const N: usize>(
+    settings: &Settings,
+    coefficients: &Coefficients<Dual<DIRECTIONS>>,
+    plain: &Coefficients<f64>,
+) -> Result<Derivatives, Fault> {
+    let values = Constants::possible(plain).ok_or(Fault::ImpossibleInput)?;
+    let constants =
+        Constants::new(coefficients).map(|dual| Tangent { value: dual.value, slopes: dual.slopes });
+    let state = M::start(&constants);
+    let step = Tangent { value: M::first_step(&values), slopes: [0.0; DIRECTIONS] };
+    let tolerance = settings.local_tolerance(M::KIND);
+    let mut group = Group::<_, M, N>::new(M::new(constants), state, step, tolerance);
+    group.model.set_any_cross(values.cross_on > 0.5);
+    loop {
+        let moment = group.look();
+        if group.finished() != 0 {
+            let outcome = group.result(0)?;
+            return Ok((outcome, group.outcomes().map(|value| value.slopes)));
+        }
+        group.advance(&moment);
+    }
+}

@@ -1,0 +1,172 @@
+//! The best value of a design variable, with its uncertainty: the paper's question of which nominal
+//! viscosity.
+
+use super::CONFIDENCE;
+use super::trade::{Paired, TradePoint, limit_shares};
+use crate::campaign::common_numbers::Event;
+use crate::campaign::trade::{Sweep, TradeOutcomes};
+use crate::error::Result;
+use crate::numerics::elementary::ln;
+use crate::numerics::interval::{Earned, Estimate, Interval};
+use crate::numerics::special::student;
+use crate::study::Study;
+use serde::Serialize;
+
+/// The best value of a design variable.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DesignValueFinding {
+    /// Its path.
+    pub path: String,
+    /// Its value now, SI.
+    pub present: f64,
+    /// The range over which it was swept, SI.
+    pub range: (f64, f64),
+    /// The value at which P(any breach) is least, SI.
+    pub best: Estimate,
+    /// P(any breach) there.
+    pub probability: Estimate,
+    /// P there less P now, by common random numbers.
+    pub difference: Estimate,
+    /// P(any breach) over the range.
+    pub points: Vec<TradePoint>,
+}
+
+/// Groups of rows from which the error of a best value is read.
+const GROUPS: usize = 20;
+
+/// The best value of a swept design variable.
+pub(super) fn design_value(
+    study: &Study,
+    outcomes: &TradeOutcomes<'_>,
+    paired: Paired,
+    sweep: &Sweep,
+) -> Result<DesignValueFinding> {
+    let mut points = Vec::new();
+    for setting in sweep.coarse.iter().chain(&sweep.fine) {
+        points.push(TradePoint {
+            setting: setting.value,
+            probability: paired.probability(&setting.breaches, Event::Any)?,
+            difference: paired.difference(&outcomes.base, &setting.breaches, Event::Any)?,
+            limits: limit_shares(study, &setting.breaches),
+            reweighted: None,
+        });
+    }
+    points.sort_by(|a, b| a.setting.total_cmp(&b.setting));
+    points.dedup_by(|a, b| a.setting == b.setting);
+    let rows = outcomes.base.rows();
+    let xs: Vec<f64> = sweep.fine.iter().map(|setting| setting.value).collect();
+    let shares = |left_out: Option<usize>| -> Vec<f64> {
+        let rows = || (0..rows).filter(|k| left_out != Some(k % GROUPS));
+        sweep
+            .fine
+            .iter()
+            .map(|setting| {
+                let counts = setting.breaches.counts(Event::Any, rows());
+                counts.most_breaches() as f64 / counts.samples.max(1) as f64
+            })
+            .collect()
+    };
+    let best = best_value(&xs, &shares, (sweep.range.lower, sweep.range.upper));
+    // The nearest computed setting stands for P at the best value.
+    let near = best.value.and_then(|value| {
+        sweep.fine.iter().min_by(|a, b| (a.value - value).abs().total_cmp(&(b.value - value).abs()))
+    });
+    let none = || Estimate::none("no best value was found");
+    let (probability, difference) = match near {
+        Some(setting) => (
+            paired.probability(&setting.breaches, Event::Any)?,
+            paired.difference(&outcomes.base, &setting.breaches, Event::Any)?,
+        ),
+        None => (none(), none()),
+    };
+    Ok(DesignValueFinding {
+        path: sweep.range.target.path(),
+        present: study.design.at(sweep.range.target),
+        range: (sweep.range.lower, sweep.range.upper),
+        best,
+        probability,
+        difference,
+        points,
+    })
+}
+
+/// The least point of a parabola through ln P over the settings, with its error by leaving out one of
+/// [`GROUPS`] groups of rows at a time (the delete-a-group jackknife).
+fn best_value(
+    xs: &[f64],
+    shares: &dyn Fn(Option<usize>) -> Vec<f64>,
+    range: (f64, f64),
+) -> Estimate {
+    let ends = (xs.first().copied().unwrap_or(0.0), xs.last().copied().unwrap_or(0.0));
+    let vertex = |left_out: Option<usize>| parabola_vertex(xs, &shares(left_out));
+    let Some(value) = vertex(None).filter(|x| (ends.0..=ends.1).contains(x)) else {
+        let ps = shares(None);
+        let best = (0..xs.len()).min_by(|&a, &b| ps[a].total_cmp(&ps[b])).map(|k| xs[k]);
+        let why = match best {
+            Some(x) if x <= range.0 || x >= range.1 => "the best value is an end of its range",
+            _ => "P has no clear minimum over the range",
+        };
+        return Estimate { value: best, standard_error: None, interval: Earned::none(why) };
+    };
+    let parts: Option<Vec<f64>> = (0..GROUPS).map(|group| vertex(Some(group))).collect();
+    let Some(parts) = parts else {
+        let interval = Earned::none("without some of the samples P has no minimum");
+        return Estimate { value: Some(value), standard_error: None, interval };
+    };
+    let groups = GROUPS as f64;
+    let mean = parts.iter().sum::<f64>() / groups;
+    let squares: f64 = parts.iter().map(|x| (x - mean) * (x - mean)).sum();
+    let error = (squares * (groups - 1.0) / groups).sqrt();
+    let t = student::quantile_upper(groups - 1.0, (1.0 - CONFIDENCE) / 2.0);
+    let interval = Interval {
+        lower: value - t * error,
+        upper: value + t * error,
+        confidence: CONFIDENCE,
+        method: "parabola through ln P, delete-a-group jackknife",
+    };
+    Estimate { value: Some(value), standard_error: Some(error), interval: interval.into() }
+}
+
+/// The vertex of the least-squares parabola through (x, ln p), each weighted by p; `None` if it opens
+/// downwards or a p is not positive in too many places.
+fn parabola_vertex(xs: &[f64], ps: &[f64]) -> Option<f64> {
+    let (first, last) = (*xs.first()?, *xs.last()?);
+    let (centre, half) = (0.5 * (first + last), 0.5 * (last - first));
+    let mut sums = [0.0; 5];
+    let mut right = [0.0; 3];
+    for (&x, &p) in xs.iter().zip(ps) {
+        if p <= 0.0 {
+            continue;
+        }
+        // ln of a count has variance 1/count.
+        let (t, y) = ((x - centre) / half, ln(p));
+        let mut power = p;
+        for (k, sum) in sums.iter_mut().enumerate() {
+            *sum += power;
+            if k < 3 {
+                right[k] += power * y;
+            }
+            power *= t;
+        }
+    }
+    let matrix = nalgebra::Matrix3::new(
+        sums[0], sums[1], sums[2], sums[1], sums[2], sums[3], sums[2], sums[3], sums[4],
+    );
+    let fit = matrix.lu().solve(&nalgebra::Vector3::from(right))?;
+    (fit[2] > 0.0).then(|| centre - half * fit[1] / (2.0 * fit[2]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::elementary::exp;
+
+    #[test]
+    fn analytic_the_vertex_of_a_parabola_is_found() {
+        let xs: Vec<f64> = (0..9).map(|k| 80.0 + 5.0 * k as f64).collect();
+        let ps: Vec<f64> =
+            xs.iter().map(|x| exp((x - 103.0) * (x - 103.0) / 200.0 - 3.0)).collect();
+        assert!((parabola_vertex(&xs, &ps).unwrap() - 103.0).abs() < 1e-9);
+        assert_eq!(parabola_vertex(&xs, &[0.0; 9]), None);
+    }
+}

@@ -1,0 +1,401 @@
+//! One panel: axes, marks, labelled limits and a key above, on kuva's scene.
+
+use super::axis::Axis;
+use super::svg::accessible;
+use kuva::backend::svg::SvgBackend;
+use kuva::prelude::{Layout, Theme};
+use kuva::render::axis::{add_axes_and_grid, add_labels_and_title};
+use kuva::render::color::Color;
+use kuva::render::layout::ComputedLayout;
+use kuva::render::render::{PathData, Primitive, Scene, TextAnchor};
+
+/// Okabe and Ito's blue: what keeps the limits, and anything without a verdict.
+pub(super) const BLUE: &str = "#0072b2";
+/// Okabe and Ito's vermillion: what breaches a limit.
+pub(super) const VERMILLION: &str = "#d55e00";
+/// Okabe and Ito's bluish green: demonstrated to be allowed.
+pub(super) const GREEN: &str = "#009e73";
+/// Okabe and Ito's orange: undecided.
+pub(super) const ORANGE: &str = "#e69f00";
+/// Colours of curves side by side, darkest first; every other curve is dashed too.
+pub(super) const PALETTE: [&str; 5] = [BLUE, VERMILLION, GREEN, "#cc79a7", ORANGE];
+/// Text, limits, the nominal descent. The style sheet of the HTML report names these four greys, to
+/// replace them on a dark page.
+pub(super) const INK: &str = "#1a1a1a";
+const AXIS: &str = "#4d4d4d";
+const GRID: &str = "#dddddd";
+const CARD: &str = "#ffffff";
+
+/// Width of a figure; height is each figure's own. At a phone's 340 px the ticks are still 8.5 px.
+pub(super) const WIDTH: f64 = 520.0;
+/// Usual height.
+pub(super) const HEIGHT: f64 = 330.0;
+const TICK_SIZE: u32 = 13;
+const LABEL_SIZE: u32 = 14;
+const ROW: f64 = 19.0;
+const SWATCH: f64 = 18.0;
+
+/// How a key's swatch looks.
+#[derive(Debug, Clone)]
+pub(super) enum Swatch {
+    Area(&'static str, f64),
+    Line(&'static str, bool),
+    Dot(&'static str),
+}
+
+/// A panel being drawn.
+pub(super) struct Chart {
+    name: String,
+    computed: ComputedLayout,
+    scene: Scene,
+    limits: Vec<(f64, String)>,
+    header: f64,
+    keys: Vec<(Swatch, String)>,
+    clipped: bool,
+}
+
+impl Chart {
+    /// An empty panel. `keys` and whether there will be limits across it decide the room above.
+    pub fn new(
+        name: &str,
+        height: f64,
+        x: &Axis,
+        y: &Axis,
+        keys: Vec<(Swatch, String)>,
+        vertical_limits: bool,
+    ) -> Self {
+        Self::with_rows(name, height, x, y, keys, vertical_limits, None)
+    }
+
+    /// As [`Chart::new`], with a named row at each whole number of y instead of numbers.
+    pub fn with_rows(
+        name: &str,
+        height: f64,
+        x: &Axis,
+        y: &Axis,
+        keys: Vec<(Swatch, String)>,
+        vertical_limits: bool,
+        rows: Option<Vec<String>>,
+    ) -> Self {
+        let theme = Theme {
+            background: CARD.to_owned(),
+            axis_color: AXIS.to_owned(),
+            grid_color: GRID.to_owned(),
+            tick_color: AXIS.to_owned(),
+            text_color: INK.to_owned(),
+            ..Theme::light()
+        };
+        let mut layout = Layout::new((x.min, x.max), (y.min, y.max))
+            .with_width(WIDTH)
+            .with_height(height)
+            .with_clamp_axis()
+            .with_x_axis_min(x.min)
+            .with_x_axis_max(x.max)
+            .with_y_axis_min(y.min)
+            .with_y_axis_max(y.max)
+            .with_ticks(5)
+            .with_x_label(x.label.clone())
+            .with_tick_size(TICK_SIZE)
+            .with_label_size(LABEL_SIZE)
+            .with_x_tick_format(x.format())
+            .with_y_tick_format(y.format())
+            .with_theme(theme);
+        if !y.label.is_empty() {
+            layout = layout.with_y_label(y.label.clone());
+        }
+        if x.is_logarithmic() {
+            layout = layout.with_log_x();
+        }
+        if y.is_logarithmic() {
+            layout = layout.with_log_y();
+        }
+        if let Some(rows) = rows {
+            layout = layout.with_y_categories(rows);
+        }
+        let mut computed = ComputedLayout::from_layout(&layout);
+        let lines = key_rows(&keys, WIDTH - 16.0).len() as f64;
+        let header = 6.0 + lines * ROW;
+        computed.margin_top = header + if vertical_limits { ROW + 4.0 } else { 6.0 };
+        computed.margin_right = computed.margin_right.max(22.0);
+        computed.recompute_transforms();
+        let mut scene = Scene::new(WIDTH, height);
+        scene.background_color = Some(CARD.to_owned());
+        scene.text_color = Some(INK.to_owned());
+        scene.font_family = Some("DejaVu Sans, Verdana, Arial, sans-serif".to_owned());
+        add_axes_and_grid(&mut scene, &computed, &layout);
+        add_labels_and_title(&mut scene, &computed, &layout);
+        let mut chart = Chart {
+            name: name.to_owned(),
+            computed,
+            scene,
+            limits: Vec::new(),
+            header,
+            keys,
+            clipped: false,
+        };
+        chart.clip();
+        chart
+    }
+
+    fn add(&mut self, primitive: Primitive) {
+        self.scene.elements.push(primitive);
+    }
+
+    fn clip(&mut self) {
+        let c = &self.computed;
+        let (x, y) = (c.margin_left, c.margin_top);
+        let (width, height) = (c.plot_width(), c.plot_height());
+        let id = format!("{}-plot", self.name);
+        // The writer opens the clipped group but leaves its path to whoever asks for it.
+        self.scene.defs.push(format!(
+            "<clipPath id=\"{id}\"><rect x=\"{x:.2}\" y=\"{y:.2}\" width=\"{width:.2}\" \
+             height=\"{height:.2}\"/></clipPath>"
+        ));
+        self.add(Primitive::ClipStart { x, y, width, height, id });
+        self.clipped = true;
+    }
+
+    fn unclip(&mut self) {
+        if std::mem::take(&mut self.clipped) {
+            self.add(Primitive::ClipEnd);
+        }
+    }
+
+    fn place(&self, x: f64, y: f64) -> (f64, f64) {
+        (self.computed.map_x(x), self.computed.map_y(y))
+    }
+
+    /// A box between two corners; `hover` is shown under the pointer.
+    pub fn bar(
+        &mut self,
+        from: (f64, f64),
+        to: (f64, f64),
+        fill: &str,
+        opacity: f64,
+        hover: String,
+    ) {
+        let (x0, y0) = self.place(from.0, from.1);
+        let (x1, y1) = self.place(to.0, to.1);
+        self.add(Primitive::GroupStart { transform: None, title: Some(hover), extra_attrs: None });
+        self.add(Primitive::Rect {
+            x: x0.min(x1),
+            y: y0.min(y1),
+            width: (x1 - x0).abs(),
+            height: (y1 - y0).abs(),
+            fill: Color::from(fill),
+            stroke: None,
+            stroke_width: None,
+            opacity: Some(opacity),
+        });
+        self.add(Primitive::GroupEnd);
+    }
+
+    /// The area between two curves over the same abscissae: (x, lower, upper).
+    pub fn band(&mut self, points: &[(f64, f64, f64)], fill: &str, opacity: f64) {
+        if points.len() < 2 {
+            return;
+        }
+        let there = points.iter().map(|&(x, lower, _)| self.place(x, lower));
+        let back = points.iter().rev().map(|&(x, _, upper)| self.place(x, upper));
+        let mut d = String::new();
+        for (k, (x, y)) in there.chain(back).enumerate() {
+            d += &format!("{}{x:.2} {y:.2}", if k == 0 { "M" } else { "L" });
+        }
+        self.add(Primitive::Path(Box::new(PathData {
+            d: d + "Z",
+            fill: Some(Color::from(fill)),
+            stroke: Color::None,
+            stroke_width: 0.0,
+            opacity: Some(opacity),
+            stroke_dasharray: None,
+        })));
+    }
+
+    /// A curve.
+    pub fn line(&mut self, points: &[(f64, f64)], stroke: &str, width: f64, dashed: bool) {
+        if points.len() < 2 {
+            return;
+        }
+        let points = points.iter().map(|&(x, y)| self.place(x, y)).collect();
+        self.add(Primitive::PolyLine {
+            points,
+            stroke: Color::from(stroke),
+            stroke_width: width,
+            stroke_dasharray: dashed.then(|| "6 4".to_owned()),
+        });
+    }
+
+    /// Dots.
+    pub fn dots(&mut self, points: &[(f64, f64)], fill: &str, radius: f64, opacity: f64) {
+        let (cx, cy) = points.iter().map(|&(x, y)| self.place(x, y)).unzip();
+        self.add(Primitive::CircleBatch {
+            cx,
+            cy,
+            r: radius,
+            fill: Color::from(fill),
+            fill_opacity: Some(opacity),
+            stroke: None,
+            stroke_width: None,
+        });
+    }
+
+    /// A dashed line across the panel at x, its label above the panel.
+    pub fn vertical_limit(&mut self, x: f64, label: String) {
+        let c = &self.computed;
+        let (at, top, bottom) = (c.map_x(x), c.margin_top, c.height - c.margin_bottom);
+        self.dashed(at, top - 4.0, at, bottom);
+        self.limits.push((at, label));
+    }
+
+    /// A dashed line at y along the last part of the panel; its name is a key.
+    pub fn limit_at_end(&mut self, y: f64) {
+        let c = &self.computed;
+        let (left, right, at) = (c.margin_left, c.width - c.margin_right, c.map_y(y));
+        self.dashed(right - 0.2 * (right - left), at, right, at);
+    }
+
+    /// A dashed line along the panel at y, labelled at its end.
+    pub fn horizontal_limit(&mut self, y: f64, label: &str) {
+        let c = &self.computed;
+        let (left, right) = (c.margin_left, c.width - c.margin_right);
+        let (at, top) = (c.map_y(y), c.margin_top);
+        self.dashed(left, at, right, at);
+        let y = if at - top < ROW { at + 15.0 } else { at - 5.0 };
+        self.text(right - 5.0, y, label.to_owned(), TextAnchor::End);
+    }
+
+    fn dashed(&mut self, x1: f64, y1: f64, x2: f64, y2: f64) {
+        self.unclip();
+        self.add(Primitive::Line {
+            x1,
+            y1,
+            x2,
+            y2,
+            stroke: Color::from(INK),
+            stroke_width: 1.5,
+            stroke_dasharray: Some("6 4".to_owned()),
+        });
+    }
+
+    fn text(&mut self, x: f64, y: f64, content: String, anchor: TextAnchor) {
+        self.unclip();
+        self.add(Primitive::Text {
+            x,
+            y,
+            content,
+            size: TICK_SIZE,
+            anchor,
+            rotate: None,
+            bold: false,
+            color: None,
+        });
+    }
+
+    /// The finished SVG, with its accessible name and description.
+    pub fn svg(mut self, title: &str, description: &str) -> String {
+        self.unclip();
+        let baseline = self.header + ROW - 4.0;
+        for (x, label) in std::mem::take(&mut self.limits) {
+            let half = text_width(&label) / 2.0;
+            let x = x.clamp(half + 4.0, WIDTH - half - 4.0);
+            self.text(x, baseline, label, TextAnchor::Middle);
+        }
+        self.draw_keys();
+        let drawn = SvgBackend::new().render_scene(&self.scene);
+        accessible(&drawn, &self.name, (WIDTH, self.scene.height), title, description)
+    }
+
+    fn draw_keys(&mut self) {
+        let keys = std::mem::take(&mut self.keys);
+        for (row, members) in key_rows(&keys, WIDTH - 16.0).into_iter().enumerate() {
+            let middle = 6.0 + (row as f64 + 0.5) * ROW;
+            for (x, k) in members {
+                let (swatch, label) = &keys[k];
+                self.draw_swatch(swatch, x + 8.0, middle);
+                let text_x = x + 8.0 + SWATCH + 6.0;
+                self.text(text_x, middle + 4.5, label.clone(), TextAnchor::Start);
+            }
+        }
+    }
+
+    fn draw_swatch(&mut self, swatch: &Swatch, x: f64, middle: f64) {
+        let primitive = match *swatch {
+            Swatch::Area(fill, opacity) => Primitive::Rect {
+                x,
+                y: middle - 6.0,
+                width: SWATCH,
+                height: 12.0,
+                fill: Color::from(fill),
+                stroke: None,
+                stroke_width: None,
+                opacity: Some(opacity),
+            },
+            Swatch::Line(stroke, dashed) => Primitive::Line {
+                x1: x,
+                y1: middle,
+                x2: x + SWATCH,
+                y2: middle,
+                stroke: Color::from(stroke),
+                stroke_width: 2.0,
+                stroke_dasharray: dashed.then(|| "6 4".to_owned()),
+            },
+            Swatch::Dot(fill) => Primitive::Circle {
+                cx: x + SWATCH / 2.0,
+                cy: middle,
+                r: 4.5,
+                fill: Color::from(fill),
+                fill_opacity: None,
+                stroke: None,
+                stroke_width: None,
+            },
+        };
+        self.add(primitive);
+    }
+}
+
+/// The width of a label, a little more than it is in the widest of the fonts asked for; kuva's own metrics
+/// are not public.
+fn text_width(text: &str) -> f64 {
+    let em = |c: char| match c {
+        'i' | 'j' | 'l' | 't' | 'f' | 'r' | '.' | ',' | ':' | ' ' | '(' | ')' | '/' => 0.41,
+        'm' | 'w' | 'M' | 'W' | '%' => 0.97,
+        'A'..='Z' => 0.72,
+        _ => 0.64,
+    };
+    f64::from(TICK_SIZE) * text.chars().map(em).sum::<f64>()
+}
+
+/// Keys from left to right, wrapped: for each row, the place and index of its members.
+fn key_rows(keys: &[(Swatch, String)], width: f64) -> Vec<Vec<(f64, usize)>> {
+    let mut rows: Vec<Vec<(f64, usize)>> = Vec::new();
+    let mut x = f64::INFINITY;
+    for (k, (_, label)) in keys.iter().enumerate() {
+        let wide = SWATCH + 6.0 + text_width(label);
+        if x + wide > width {
+            rows.push(Vec::new());
+            x = 0.0;
+        }
+        if let Some(row) = rows.last_mut() {
+            row.push((x, k));
+        }
+        x += wide + 18.0;
+    }
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn property_keys_wrap_inside_the_width() {
+        let keys: Vec<_> =
+            (0..7).map(|k| (Swatch::Dot(BLUE), format!("a key, number {k}"))).collect();
+        let rows = key_rows(&keys, 400.0);
+        assert!(rows.len() > 1);
+        assert_eq!(rows.iter().map(Vec::len).sum::<usize>(), keys.len());
+        for (x, k) in rows.into_iter().flatten() {
+            assert!(x + SWATCH + 6.0 + text_width(&keys[k].1) <= 400.0);
+        }
+    }
+}

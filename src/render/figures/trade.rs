@@ -1,0 +1,80 @@
+//! What buying down a tolerance is worth: P(any breach) against the spread of each factor.
+
+use super::Figure;
+use super::axis::Axis;
+use super::chart::{Chart, HEIGHT, PALETTE, Swatch};
+use crate::findings::Findings;
+use crate::findings::trade::TradeCurve;
+use crate::render::figures_of_speech::probability;
+use crate::units::number;
+
+/// Curves drawn in a colour of their own: the ones that move P most.
+const SHOWN: usize = 5;
+
+/// The curves of the factors whose spread moves P(any breach) most; nothing without a trade.
+pub(super) fn figure(findings: &Findings) -> Option<Figure> {
+    let curve = |curve: &TradeCurve| -> Vec<(f64, f64)> {
+        curve.points.iter().filter_map(|p| Some((p.setting, p.probability.value?))).collect()
+    };
+    let range = |points: &[(f64, f64)]| {
+        let values = || points.iter().map(|p| p.1);
+        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+    };
+    let mut curves: Vec<(&TradeCurve, Vec<(f64, f64)>)> = findings
+        .trade
+        .curves
+        .iter()
+        .filter(|c| c.parameter == "spread")
+        .map(|c| (c, curve(c)))
+        .filter(|(_, points)| points.len() > 1)
+        .collect();
+    curves.sort_by(|a, b| range(&b.1).total_cmp(&range(&a.1)));
+    curves.truncate(SHOWN);
+    let (strongest, _) = curves.first()?;
+    let points = || curves.iter().flat_map(|(_, points)| points);
+    let allowed = findings.verdict.reliability.map(|reliability| 1.0 - reliability);
+    let ends = |read: fn(&(f64, f64)) -> f64| {
+        let low = points().map(read).fold(f64::INFINITY, f64::min);
+        (low, points().map(read).fold(f64::NEG_INFINITY, f64::max))
+    };
+    let ((left, right), (lowest, highest)) = (ends(|p| p.0), ends(|p| p.1));
+    // What is allowed belongs to the picture if the curves come anywhere near it.
+    let near = allowed.filter(|a| *a > lowest - 3.0 * (highest - lowest));
+    let low = near.map_or(lowest, |a| a.min(lowest));
+    let high = near.map_or(highest, |a| a.max(highest));
+    let keys = curves
+        .iter()
+        .enumerate()
+        .map(|(k, (c, _))| (Swatch::Line(PALETTE[k], k % 2 == 1), c.factor.clone()))
+        .collect();
+    let room = 0.08 * (high - low);
+    let x = Axis::linear("spread over the card's", left, right);
+    let y = Axis::shares("probability of any breach", (low - room).max(0.0), high + room);
+    let name = "trade-spread";
+    let mut chart = Chart::new(name, HEIGHT + 30.0, &x, &y, keys, false);
+    for (k, (_, points)) in curves.iter().enumerate() {
+        chart.line(points, PALETTE[k], 2.2, k % 2 == 1);
+        chart.dots(points, PALETTE[k], 3.2, 1.0);
+    }
+    if let Some(allowed) = near {
+        chart.horizontal_limit(allowed, &format!("allowed {}", probability(allowed)));
+    }
+    let title = "What a tighter tolerance is worth".to_owned();
+    let mut caption = format!(
+        "P(any breach) when one spread alone is multiplied, for the {} factors that move it most, all on the \
+         same random numbers.",
+        curves.len()
+    );
+    if let (Some(allowed), None) = (allowed, near) {
+        caption += &format!(" What is allowed, {}, lies far below the axis.", probability(allowed));
+    }
+    let alternative = format!(
+        "Curves of the probability of any breach over spreads from {} to {} of the card's; the steepest is \
+         that of {}.",
+        number(left, 3),
+        number(right, 3),
+        strongest.factor
+    );
+    let svg = chart.svg(&title, &alternative);
+    Some(Figure { name: name.to_owned(), title, caption, alternative, svg })
+}

@@ -1,0 +1,105 @@
+//! `[sampling] until`: when sampling ends before its budget.
+
+use super::document::Node;
+use super::read::{self, Section};
+use super::vocabulary as keys;
+use super::{Requirement, SamplingPlan};
+use crate::error::Result;
+use crate::reliability::adaptive::Until;
+use crate::sampling;
+
+/// When sampling ends, and how sure that is. The budget is the plan's number of samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StoppingPlan {
+    /// What ends the sampling.
+    pub until: Until,
+    /// Confidence with which all intervals hold at every look, in (0, 1).
+    pub confidence: f64,
+}
+
+/// An example for diagnostics.
+pub(super) const EXAMPLE: &str = "{ relative_error = 0.05, budget = 10_000_000 }";
+
+/// Reads `until` into a plan whose design is known, and with it the plan's number of samples.
+pub(super) fn until(
+    node: &Node,
+    samples: Option<&Node>,
+    has_limits: bool,
+    requirement: Option<Requirement>,
+    plan: &mut SamplingPlan,
+) -> Result<()> {
+    let section = Section::new("until", &node.place, read::table(node, EXAMPLE)?, keys::UNTIL)?;
+    if plan.design != sampling::Design::MonteCarlo {
+        let problem = format!("`until` does not go with the design \"{}\"", plan.design.name());
+        let help = "its points are not independent, and an interval that holds at every look needs \
+                    independent ones";
+        let expected = "expected the design \"monte-carlo\"";
+        return Err(node.place.error_with(problem, expected, Some(help.to_owned())));
+    }
+    if let Some(samples) = samples {
+        let help = "the most samples that may be drawn are the budget of `until`";
+        let expected = "expected samples or until, not both";
+        return Err(samples.place.error_with(
+            "`until` decides the number of samples",
+            expected,
+            Some(help.to_owned()),
+        ));
+    }
+    if !has_limits {
+        let expected = "expected at least one limit, such as [limits] time = { max = \"210 s\" }";
+        return Err(node
+            .place
+            .error("`until` without limits has no probability to wait for", expected));
+    }
+    let until = rule(node, &section, requirement)?;
+    let confidence = match (section.get("confidence"), requirement) {
+        (Some(node), _) => read::open_share(node, "confidence", "0.9")?,
+        (None, Some(requirement)) => requirement.confidence,
+        (None, None) => {
+            let problem = "`until` lacks the key `confidence`";
+            let help = "a study with a requirement may leave it out: its confidence is taken";
+            return Err(node.place.error_with(
+                problem,
+                "expected confidence = 0.9",
+                Some(help.to_owned()),
+            ));
+        }
+    };
+    if let (Until::Decided { .. }, Some(requirement), Some(stated)) =
+        (until, requirement, section.get("confidence"))
+        && confidence < requirement.confidence
+    {
+        let problem = format!("a confidence of {confidence} does not decide the requirement");
+        let expected =
+            format!("expected at least the requirement's confidence, {}", requirement.confidence);
+        return Err(stated.place.error(problem, expected));
+    }
+    let budget = section.require("budget", "10_000_000")?;
+    plan.samples = read::integer(budget, 1, sampling::MAX_SAMPLES, "10_000_000")?;
+    plan.stopping = Some(StoppingPlan { until, confidence });
+    Ok(())
+}
+
+/// The one rule that is stated.
+fn rule(node: &Node, section: &Section, requirement: Option<Requirement>) -> Result<Until> {
+    let expected = "expected relative_error = 0.05 or decided = true";
+    match (section.get("relative_error"), section.get("decided")) {
+        (None, None) => Err(node.place.error("`until` does not say what to wait for", expected)),
+        (Some(_), Some(second)) => {
+            Err(second.place.error("`until` waits for one thing, and two are stated", expected))
+        }
+        (Some(node), None) => {
+            Ok(Until::RelativeError(read::open_share(node, "relative_error", "0.05")?))
+        }
+        (None, Some(node)) => match (read::boolean(node)?, requirement) {
+            (false, _) => {
+                Err(node.place.error("`decided = false` does not say what to wait for", expected))
+            }
+            (true, None) => Err(node.place.error(
+                "there is no requirement to decide",
+                "expected a section [requirement], or relative_error = 0.05",
+            )),
+            (true, Some(stated)) => Ok(Until::Decided { allowed: 1.0 - stated.reliability }),
+        },
+    }
+}

@@ -1,0 +1,6 @@
+//! Figures and the HTML report, from a small run of the default study.
+
+mod figures;
+mod html;
+mod numbers;
+mod sample;

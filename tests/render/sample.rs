@@ -1,0 +1,69 @@
+//! Small runs of the default study, computed once for all tests.
+
+use reeldown::campaign::{self, Progress, Record};
+use reeldown::findings::{self, Evidence, Findings};
+use reeldown::study::{Override, Study};
+use std::sync::OnceLock;
+
+/// A run and its findings.
+pub struct Sample {
+    pub record: Record,
+    pub findings: Findings,
+}
+
+fn unasked() -> String {
+    "none was asked for".to_owned()
+}
+
+fn run(settings: &[&str]) -> Sample {
+    let overrides: Vec<Override> =
+        settings.iter().map(|text| Override::parse("--set", text).unwrap()).collect();
+    let study = Study::load(None, &overrides).unwrap();
+    let progress = Progress::default();
+    let replicates = campaign::sampler(&study).unwrap().replicates();
+    let mut record = Record::new(&study, replicates).unwrap();
+    let mut sink = |table| {
+        record.absorb(&table);
+        Ok(())
+    };
+    campaign::run(&study, 0..study.sampling.samples, &progress, &mut sink).unwrap();
+    let pick_freeze = match campaign::run_pick_freeze(&study, &progress) {
+        Ok(Some(design)) => Ok(design),
+        Ok(None) => Err(unasked()),
+        Err(reason) => Err(reason.to_string()),
+    };
+    let findings = findings::gather(&Evidence {
+        study: &study,
+        record: &record,
+        stop: None,
+        rare: Vec::new(),
+        nominal: campaign::nominal(&study),
+        verification: campaign::verify(&study, &record).unwrap(),
+        pick_freeze,
+        shapley: Err(unasked()),
+        trade: Err(unasked()),
+        known: Err(unasked()),
+        command: "reeldown run".to_owned(),
+    })
+    .unwrap();
+    Sample { record, findings }
+}
+
+/// Independent samples, with sensitivity indices.
+pub fn independent() -> &'static Sample {
+    static SAMPLE: OnceLock<Sample> = OnceLock::new();
+    SAMPLE.get_or_init(|| run(&["sampling.samples=600", "sensitivity.base_samples=64"]))
+}
+
+/// A replicated design without sensitivity indices.
+pub fn replicated() -> &'static Sample {
+    static SAMPLE: OnceLock<Sample> = OnceLock::new();
+    SAMPLE.get_or_init(|| {
+        run(&[
+            "sampling.design=latin-hypercube",
+            "sampling.samples=400",
+            "sampling.replicates=4",
+            "sensitivity.base_samples=0",
+        ])
+    })
+}

@@ -1,0 +1,123 @@
+//! The trade of the HABE study against independent reruns.
+
+use reeldown::campaign::common_numbers::{Breaches, Change, CommonSample, Event};
+use reeldown::campaign::trade::{run_trade, trade_factors};
+use reeldown::campaign::{self, Progress, Record};
+use reeldown::streams::Purpose;
+use reeldown::study::{Override, Study};
+
+/// The embedded study, quasi-steady, with few samples.
+pub fn study(set: &[&str]) -> Study {
+    let few = ["model=quasi-steady", "sampling.samples=20000", "trade.samples=4000"];
+    let overrides: Vec<Override> = few
+        .iter()
+        .chain(set)
+        .map(|text| Override::parse("--set", text).expect("an override"))
+        .collect();
+    Study::load(None, &overrides).expect("the embedded study is good")
+}
+
+pub fn recorded(study: &Study) -> Record {
+    let sampler = campaign::sampler(study).expect("a sampler");
+    let mut record = Record::new(study, sampler.replicates()).expect("a record");
+    let progress = Progress::default();
+    let mut sink = |table: reeldown::outcomes::OutcomeTable| {
+        record.absorb(&table);
+        Ok(())
+    };
+    campaign::run(study, 0..study.sampling.samples, &progress, &mut sink).expect("a run");
+    record
+}
+
+fn share(breaches: &Breaches) -> f64 {
+    breaches.count(Event::Any).estimate().expect("an estimate")
+}
+
+#[test]
+fn property_curves_agree_with_independent_reruns() {
+    let study = study(&[]);
+    let progress = Progress::default();
+    let record = recorded(&study);
+    let trade = run_trade(&study, &record, &progress).expect("a trade").expect("a trade");
+    let base = share(&trade.base);
+    // A rerun of its own for the two factors that matter and the gaps, by points the trade never saw.
+    let independent = CommonSample::independent(&study, 0..4000, Purpose::Test).expect("a sample");
+    let mut checked = 0;
+    for curve in &trade.curves {
+        let name = &trade.factors[curve.factor].name;
+        if !["brake.gap", "fluid.shear_factor", "initial.temperature"].contains(&name.as_str()) {
+            continue;
+        }
+        for setting in &curve.settings {
+            let change = Change { marginals: setting.marginals.clone(), ..Change::default() };
+            let again = share(&independent.changed(&change, &progress).expect("a rerun"));
+            let here = share(&setting.breaches);
+            // Two independent shares of 4000: 4.5 standard errors each, about 1 in 10⁵ for 30 settings.
+            let p = 0.5 * (again + here);
+            let allowed = 4.5 * (2.0 * p * (1.0 - p) / 4000.0).sqrt();
+            assert!((again - here).abs() <= allowed, "{name} {}: {here} {again}", setting.value);
+            checked += 1;
+        }
+    }
+    assert_eq!(checked, 30);
+    assert!(
+        (0.35..0.45).contains(&base),
+        "the paper's case misses about four times in ten: {base}"
+    );
+}
+
+#[test]
+fn property_the_base_of_the_trade_is_the_run() {
+    let study = study(&["sampling.samples=4000"]);
+    let record = recorded(&study);
+    let progress = Progress::default();
+    let sample = CommonSample::of_run(&study, 4000).expect("a sample");
+    let base = sample.base(&progress).expect("breaches");
+    let of_run = Breaches::from_margins(study.limits.len(), 4000, |i, k| record.margins(i)[k]);
+    assert_eq!(base, of_run);
+    // Nothing is changed by a spread factor of one.
+    for factor in trade_factors(&study) {
+        let same = Change::spread(&study, &factor.columns, 1.0).expect("a change");
+        let again = sample.changed(&same, &progress).expect("breaches");
+        let counts = again.against(&base, Event::Any, 0..4000);
+        // The factor passes through mean + 1·(x − mean) and its rounding.
+        assert!(counts.gained + counts.lost <= 1, "{}: {counts:?}", factor.name);
+    }
+}
+
+#[test]
+fn property_score_sums_of_the_study_agree_with_central_differences() {
+    let study = study(&[]);
+    let record = recorded(&study);
+    let trade = run_trade(&study, &record, &Progress::default()).expect("a trade").expect("one");
+    let any = study.limits.len();
+    let mut compared = 0;
+    for difference in &trade.differences {
+        let scores = trade.scores.iter().find(|scores| {
+            scores.factor == difference.factor && scores.parameter == difference.parameter
+        });
+        let sums = scores.expect("scores").sums.as_ref().expect("sums");
+        let score = sums[any].derivative(0.95).expect("a derivative").derivative;
+        let (below, above) = &difference.breaches;
+        let paired = above.against(below, Event::Any, 0..above.rows());
+        let paired = paired.difference(0.95).expect("a difference");
+        let scale = 1.0 / (2.0 * difference.step);
+        let (a, b) = (score.value.expect("a"), paired.value.expect("b") * scale);
+        let error_a = score.standard_error.expect("an error");
+        let error_b = paired.standard_error.expect("an error") * scale;
+        // 4.5 standard errors of independent estimates would be 1 in 10⁵; these share their points.
+        let allowed = 4.5 * (error_a * error_a + error_b * error_b).sqrt();
+        assert!((a - b).abs() <= allowed, "{difference:?}: {a} ± {error_a}, {b} ± {error_b}");
+        compared += 1;
+    }
+    assert_eq!(compared, 6);
+}
+
+#[test]
+fn property_a_replicated_design_has_a_trade_too() {
+    let study = study(&["sampling.design=sobol", "sampling.samples=4096", "trade.samples=1024"]);
+    let record = recorded(&study);
+    let trade = run_trade(&study, &record, &Progress::default()).expect("a trade").expect("one");
+    assert_eq!(trade.replicates, 16);
+    assert_eq!(trade.base.rows(), 1024);
+}

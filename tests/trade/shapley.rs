@@ -1,0 +1,101 @@
+//! Shapley effects and sensitivities of a breach against closed forms.
+
+use reeldown::numerics::columns::Columns;
+use reeldown::numerics::special::normal;
+use reeldown::sampling::{Design, Sampler};
+use reeldown::sensitivity::shapley::Walks;
+use reeldown::sensitivity::target::breach_sensitivities;
+use reeldown::streams::Purpose;
+use reeldown::uncertainty::{Copula, Joint, Law, Marginal, Measure, Statement};
+
+fn normals(rows: usize, columns: usize, seed: u64) -> Columns {
+    let sampler = Sampler::new(Design::MonteCarlo, columns, rows as u64, 1, seed, Purpose::Shapley);
+    let mut points = Columns::new(rows, columns);
+    sampler.expect("a sampler").fill(0, &mut points).expect("points");
+    let mut normals = Columns::new(rows, columns);
+    for j in 0..columns {
+        normal::quantile_column(points.column(j), normals.column_mut(j));
+    }
+    normals
+}
+
+fn check(walks: &Walks, exact: &[f64], outcome: impl Fn(&[f64]) -> f64) {
+    let ends = normals(walks.orders(), 2 * walks.inputs(), 3);
+    let points = walks.points(0, &ends).expect("points");
+    let outcomes: Vec<f64> = (0..points.rows()).map(|k| outcome(&points.row(k))).collect();
+    let found = walks.effects(&outcomes, 0.9999).expect("effects");
+    let sum: f64 = found.effects.iter().filter_map(|effect| effect.value).sum();
+    assert!((sum - 1.0).abs() < 1e-9, "{sum}");
+    for (effect, exact) in found.effects.iter().zip(exact) {
+        let interval = effect.interval.interval().copied().expect("an interval");
+        assert!(interval.contains(*exact), "{interval:?} {exact}");
+        assert!(interval.width() < 0.1, "{interval:?}");
+    }
+}
+
+#[test]
+fn analytic_ishigami() {
+    // Closed forms of Ishigami's function: Sᵢ plus equal shares of the interaction of 1 and 3.
+    let exact = [0.435747023178885, 0.442411144790041, 0.121841832031074];
+    let walks = Walks::new(vec![vec![0], vec![1], vec![2]], None, 40_000, 7).expect("walks");
+    let angle = |z: f64| std::f64::consts::PI * (2.0 * normal::cdf(z) - 1.0);
+    check(&walks, &exact, |z| {
+        let (a, b, c) = (angle(z[0]), angle(z[1]), angle(z[2]));
+        a.sin() + 7.0 * b.sin().powi(2) + 0.1 * c.powi(4) * a.sin()
+    });
+}
+
+#[test]
+fn analytic_linear_function_of_correlated_normal_variables() {
+    // x1 + x2 + x3 with sd 1, 1, 2 and corr(x2, x3) = 0.9: conditional variances of Gaussian vectors.
+    let exact = [0.10416666666666667, 0.41822916666666665, 0.4776041666666667];
+    let rows = vec![vec![1.0, 0.0, 0.0], vec![0.0, 1.0, 0.9], vec![0.0, 0.9, 1.0]];
+    let walks = Walks::new(vec![vec![0], vec![1], vec![2]], Some(&rows), 40_000, 7).expect("walks");
+    let statement = Statement { first: 1, second: 2, measure: Measure::Normal(0.9) };
+    let copula = Copula::new(3, &[statement]).expect("a copula");
+    let marginals = [1.0, 1.0, 2.0]
+        .map(|sd| Marginal::untruncated(Law::normal(0.0, sd).expect("a law")))
+        .to_vec();
+    let joint = Joint::new(marginals, Some(copula)).expect("a joint law");
+    let outcome = |z: &[f64]| {
+        let mut x = Columns::default();
+        joint.from_standard_normal(&Columns::from_rows(&[z]), &mut x);
+        x.row(0).iter().sum()
+    };
+    check(&walks, &exact, outcome);
+    // The two that are correlated as one factor: the shares of a group add.
+    let grouped = Walks::new(vec![vec![0], vec![1, 2]], Some(&rows), 40_000, 7).expect("walks");
+    check(&grouped, &[exact[0], exact[1] + exact[2]], outcome);
+}
+
+#[test]
+fn analytic_a_breach_beyond_a_plane() {
+    // 1[3 − Σ √aᵢ uᵢ < 0]: first-order indices of the indicator by the bivariate normal law, and the mean
+    // score of uᵢ among the breaches √aᵢ φ(3)/Φ(−3).
+    let a = [0.6f64, 0.3, 0.1];
+    let target = [0.102244287045961, 0.0163412850642684, 0.00228881392242621];
+    let rows = 1_000_000;
+    let u = normals(rows, 3, 5);
+    let breached: Vec<f64> = (0..rows)
+        .map(|k| {
+            let sum: f64 = a.iter().enumerate().map(|(j, a)| a.sqrt() * u.get(k, j)).sum();
+            f64::from(u8::from(sum > 3.0))
+        })
+        .collect();
+    let uniforms: Vec<Vec<f64>> =
+        (0..3).map(|j| u.column(j).iter().map(|&z| normal::cdf(z)).collect()).collect();
+    let columns: Vec<&[f64]> = uniforms.iter().map(Vec::as_slice).collect();
+    let found = breach_sensitivities(&columns, &breached, 0.9999).expect("sensitivities");
+    let mills = normal::density(3.0) / normal::survival(3.0);
+    for ((found, a), target) in found.iter().zip(a).zip(target) {
+        let shift = found.shift.interval.interval().copied().expect("an interval");
+        assert!(shift.contains(a.sqrt() * mills), "{shift:?}");
+        if let Some(interval) = found.target.interval.interval() {
+            assert!(interval.contains(target), "{interval:?} {target}");
+        }
+        assert!(found.p_value.expect("a p-value") < 1e-6);
+    }
+    assert!(found[0].target.interval.interval().is_some(), "{found:?}");
+    let distances: Vec<f64> = found.iter().filter_map(|f| f.distance.value).collect();
+    assert!(distances[0] > distances[1] && distances[1] > distances[2], "{distances:?}");
+}
