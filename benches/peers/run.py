@@ -44,7 +44,7 @@ def arguments():
     parser.add_argument("--core", type=int, default=max(os.sched_getaffinity(0)))
     parser.add_argument("--only", choices=list(MODULES), action="append")
     parser.add_argument("--out", type=pathlib.Path, default=HERE / "results.md")
-    parser.add_argument("--timeout", type=float, default=120.0, help="seconds for one peer's module")
+    parser.add_argument("--timeout", type=float, default=180.0, help="seconds for one peer's module")
     return parser.parse_args()
 
 

@@ -204,17 +204,14 @@ fn check(finding: &TradeFinding) -> Option<String> {
             refused += 1;
             continue;
         }
-        let (Some(value), Some(error)) =
-            (check.probability.value, check.probability.standard_error)
-        else {
-            continue;
-        };
-        let (Some(base), Some(own)) = (point.probability.value, point.difference.standard_error)
+        let Some(error) = check.difference_error else { continue };
+        let Some(value) = check.probability.value else { continue };
+        let (Some(rerun), Some(own)) = (point.probability.value, point.difference.standard_error)
         else {
             continue;
         };
         passed += 1;
-        agree += u64::from((value - base).abs() <= 1.96 * error);
+        agree += u64::from((value - rerun).abs() <= 1.96 * (error * error + own * own).sqrt());
         if own > 0.0 {
             wider.push(error / own);
         }
@@ -224,8 +221,9 @@ fn check(finding: &TradeFinding) -> Option<String> {
     (passed > 0).then(|| {
         format!(
             "Reweighting the run instead, as a check: the guard refuses {refused} of {} settings (too few \
-             effective samples, or values never drawn); of the others {agree} of {passed} agree within their \
-             95 % error, which is {} times the rerun's (median).",
+             effective samples, or values never drawn); of the others {agree} of {passed} agree within the \
+             95 % error of their difference. Its error of a difference to the base is {} times the rerun's (median), \
+             so the reruns are what is shown.",
             passed + refused,
             median.map_or("–".to_owned(), |ratio| number(ratio, 2))
         )

@@ -22,6 +22,8 @@ const FEWEST: f64 = 20.0;
 pub struct Reweighted {
     /// The probability, if it is to be trusted.
     pub probability: Estimate,
+    /// Standard error of its difference to the probability under the sampled laws, from the same samples.
+    pub difference_error: Option<f64>,
     /// Effective samples as a share of all.
     pub effective_share: f64,
     /// Whether the guard lets it pass.
@@ -49,6 +51,7 @@ pub fn reweighted(
     }
     let refused = |effective_share: f64, why: String| Reweighted {
         probability: Estimate::none(why),
+        difference_error: None,
         effective_share,
         trusted: false,
     };
@@ -101,7 +104,22 @@ pub fn reweighted(
     };
     Ok(Reweighted {
         probability: Estimate { value: Some(value), standard_error: Some(error), interval },
+        difference_error: Some(difference_error(breached, log_ratios, value, mean)),
         effective_share: share,
         trusted: true,
     })
+}
+
+/// Standard error of the reweighted probability less the plain one: of w (b − p')/w̄ − (b − p), linearised.
+fn difference_error(breached: &[f64], log_ratios: &[f64], reweighted: f64, mean: f64) -> f64 {
+    let known = || breached.iter().zip(log_ratios).filter(|(b, _)| !b.is_nan());
+    let n = known().count() as f64;
+    let plain = known().map(|(b, _)| b).sum::<f64>() / n;
+    let squares: f64 = known()
+        .map(|(b, log_ratio)| {
+            let residual = exp(*log_ratio) / mean * (b - reweighted) - (b - plain);
+            residual * residual
+        })
+        .sum();
+    squares.sqrt() / n
 }
