@@ -1,5 +1,6 @@
 //! Findings as text: a terminal summary and a Markdown report. Returns strings; writes and prints nothing.
 
+mod driver_view;
 mod figures_of_speech;
 mod known_view;
 mod markdown;
