@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::numerics::columns::Columns;
 use crate::streams::Purpose;
 use crate::study::{Known, Study};
+use crate::uncertainty::Law;
 
 /// Settings of a measured value in a chart.
 const SETTINGS: usize = 21;
@@ -124,12 +125,16 @@ pub fn run_known(
     Ok(Some(KnownOutcomes { stages, charts, map, samples: rows }))
 }
 
-/// Values over the law's support, or where it has none, over all but a thousandth at either end.
+/// Values between the law's stated or own ends; where it has none, over all but a thousandth at either end.
 fn values(study: &Study, input: usize) -> Vec<f64> {
     let marginal = &study.inputs[input].marginal;
-    let (from, to) = marginal.support();
-    let from = if from.is_finite() { from } else { marginal.quantile_lower(1e-3) };
-    let to = if to.is_finite() { to } else { marginal.quantile_upper(1e-3) };
+    let law = marginal.law();
+    let bounded = matches!(law, Law::Uniform { .. } | Law::Triangular { .. } | Law::Beta { .. });
+    let own = bounded.then(|| law.support());
+    let from = marginal.lower().or(own.map(|ends| ends.0));
+    let to = marginal.upper().or(own.map(|ends| ends.1));
+    let from = from.unwrap_or_else(|| marginal.quantile_lower(1e-3));
+    let to = to.unwrap_or_else(|| marginal.quantile_upper(1e-3));
     // Of a dependent input just inside the ends, where the others' laws given it still exist.
     let inside = if study.joint.is_independent() { 0.0 } else { 1e-9 * (to - from) };
     let at = |k: usize| from + (to - from) * k as f64 / (SETTINGS - 1) as f64;

@@ -25,6 +25,10 @@ const OUTCOMES: &str = "outcomes.parquet";
 const FINDINGS: &str = "findings.json";
 /// The report.
 const REPORT: &str = "report.md";
+/// The report for a browser.
+const REPORT_HTML: &str = "report.html";
+/// The directory of its figures.
+const FIGURES: &str = "figures";
 /// The table of sensitivity indices.
 const SENSITIVITY: &str = "sensitivity.parquet";
 /// What may differ between two runs of one study.
@@ -45,7 +49,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Ending> {
     let directory =
         arguments.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(arguments.study.name()));
     // What stands in the way is said now, not after the descents.
-    for name in [OUTCOMES, FINDINGS, REPORT, SENSITIVITY, TRADE, PROVENANCE] {
+    for name in [OUTCOMES, FINDINGS, REPORT, REPORT_HTML, SENSITIVITY, TRADE, PROVENANCE] {
         refuse_obstacle(&directory.join(name))?;
     }
     campaign::with_threads(arguments.threads.map(usize::from), || {
@@ -229,7 +233,12 @@ impl Run<'_> {
     fn write(&self, findings: &Findings) -> Result<()> {
         let at = |name: &str| self.directory.join(name);
         write_text(&at(FINDINGS), &json(findings)?)?;
-        write_text(&at(REPORT), &render::markdown(findings)?)?;
+        let figures = render::figures(findings);
+        for figure in figures.all() {
+            write_text(&at(FIGURES).join(figure.file_name()), &figure.svg)?;
+        }
+        write_text(&at(REPORT), &render::markdown(findings, &figures)?)?;
+        write_text(&at(REPORT_HTML), &render::html(findings, &figures)?)?;
         write_sensitivity(&at(SENSITIVITY), &findings.drivers, &self.parentage)?;
         write_trade(&at(TRADE), findings, &self.parentage)
     }

@@ -5,6 +5,7 @@ mod demonstration;
 pub mod derivatives;
 pub mod design_value;
 mod drivers;
+mod figures;
 mod inputs;
 pub mod known;
 mod margins;
@@ -29,6 +30,10 @@ use std::collections::BTreeMap;
 
 pub use demonstration::{Decision, VerdictFinding, VerdictWord};
 pub use drivers::{DriverOutput, DriversFinding, FactorFinding};
+pub use figures::{
+    Checkpoint, ConstantTemperature, Convergence, Distribution, Exceedance, Fan, FanBand,
+    FigureData, Interaction, InteractionInput, PaperRuns, paper_runs,
+};
 pub use inputs::InputFinding;
 pub use known::KnownFinding;
 pub use margins::{MarginFinding, MarginQuantile};
@@ -77,6 +82,8 @@ pub struct Findings {
     pub exceptions: ExceptionFinding,
     /// What is uncertain.
     pub inputs: Vec<InputFinding>,
+    /// The numbers behind the figures.
+    pub figures: FigureData,
     /// What the integrator's own error could have done.
     pub numerical: NumericalFinding,
     /// How the numbers were obtained, and what they do not say.
@@ -199,6 +206,7 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
     let mut drawn = study.clone();
     drawn.sampling.samples = record.counts().samples();
     let sampler = campaign::sampler(&drawn)?;
+    let drivers = drivers::drivers(study, &evidence.pick_freeze)?;
     Ok(Findings {
         format: 1,
         title: study.title.clone(),
@@ -209,7 +217,8 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
         margins: margins::margins(study, record)?,
         outcomes: OutcomeQuantity::ALL.map(|quantity| outcome(record, quantity)).to_vec(),
         nominal: nominal(study, &evidence.nominal),
-        drivers: drivers::drivers(study, &evidence.pick_freeze)?,
+        figures: figures::figures(study, record, &drivers)?,
+        drivers,
         shapley: shapley::shapley(study, &evidence.shapley)?,
         breaches: shapley::breaches(study, &evidence.trade)?,
         trade: trade::trade(study, &evidence.trade)?,

@@ -1,25 +1,37 @@
 //! The report as Markdown, laid out by the template in `reports/templates/report.md`.
 
-use super::view::view;
+use super::figures::ReportFigures;
+use super::html::Sections;
+use super::view::{View, view};
 use crate::error::{Error, Result};
 use crate::findings::Findings;
 use minijinja::Environment;
+use serde::Serialize;
 
 const TEMPLATE: &str = include_str!("../../reports/templates/report.md");
 
-/// The report as Markdown.
+/// What the template is filled in from.
+#[derive(Serialize)]
+struct Page {
+    #[serde(flatten)]
+    view: View,
+    figures: Sections,
+}
+
+/// The report as Markdown; its figures are files in the directory `figures` beside it.
 ///
 /// # Errors
 /// If the template is at fault: a mistake of this program's, which its tests would have shown.
-pub fn markdown(findings: &Findings) -> Result<String> {
+pub fn markdown(findings: &Findings, figures: &ReportFigures) -> Result<String> {
     let broken = |reason: minijinja::Error| {
         Error::argument(format!("the report template cannot be filled in: {reason:#}"))
     };
+    let page = Page { view: view(findings), figures: Sections::new(figures) };
     let mut environment = Environment::new();
     environment.add_template("report.md", TEMPLATE).map_err(broken)?;
     let text = environment
         .get_template("report.md")
-        .and_then(|template| template.render(minijinja::value::Serde(view(findings))))
+        .and_then(|template| template.render(minijinja::value::Serde(page)))
         .map_err(broken)?;
     Ok(tidy(&text))
 }

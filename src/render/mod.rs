@@ -1,7 +1,9 @@
-//! Findings as text: a terminal summary and a Markdown report. Returns strings; writes and prints nothing.
+//! Findings as text and figures: a terminal summary, a Markdown and an HTML report, SVG. Returns strings; writes and prints nothing.
 
 mod driver_view;
+mod figures;
 mod figures_of_speech;
+mod html;
 mod known_view;
 mod markdown;
 mod tables;
@@ -10,6 +12,8 @@ mod tighten;
 mod trade_view;
 mod view;
 
+pub use figures::{Figure, ReportFigures, figures, paper_figures};
+pub use html::html;
 pub use markdown::markdown;
 pub use tables::table;
 pub use terminal::{Style, terminal};

@@ -28,8 +28,10 @@ fn property_the_verdict_comes_first_and_every_figure_is_there() {
     for figure in figures(&sample.findings).all() {
         assert!(page.contains(&figure.svg), "{}", figure.name);
     }
+    // The template engine escapes a solidus as well.
+    let text = page.replace("&#x2f;", "/");
     for probability in &sample.findings.probabilities {
-        assert!(page.contains(&probability.title));
+        assert!(text.contains(&probability.title));
     }
 }
 

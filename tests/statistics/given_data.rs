@@ -33,8 +33,9 @@ fn linear(rows: usize, seed: u64) -> GivenData {
 /// x₁ + x₂ + x₃ with standard deviations (1, 1, 2) and correlation 0.9 of x₂ and x₃.
 fn correlated(rows: usize, seed: u64) -> GivenData {
     let mut x = normals(rows, 3, seed);
-    for k in 0..rows {
-        x[2][k] = 2.0 * (0.9 * x[1][k] + (1.0f64 - 0.81).sqrt() * x[2][k]);
+    let second = x[1].clone();
+    for (third, second) in x[2].iter_mut().zip(second) {
+        *third = 2.0 * (0.9 * second + (1.0f64 - 0.81).sqrt() * *third);
     }
     let outcome: Vec<f64> = (0..rows).map(|k| x[0][k] + x[1][k] + x[2][k]).collect();
     given(&x, &outcome)

@@ -151,6 +151,22 @@ fn distribution(study: &Study, record: &Record, i: usize) -> Result<Option<Distr
 
 /// Every `step`-th member, so that about `most` are left, with zero among them if it was.
 fn thinned(range: std::ops::RangeInclusive<i64>, most: i64) -> impl Iterator<Item = i64> {
-    let step = ((range.end() - range.start()) / most).max(1);
-    range.filter(move |k| k % step == 0)
+    let (start, end) = range.into_inner();
+    let step = ((end - start) / most).max(1);
+    let first = start + (-start).rem_euclid(step);
+    (first..=end).step_by(usize::try_from(step).unwrap_or(usize::MAX))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::thinned;
+
+    #[test]
+    fn property_thinning_keeps_zero_and_takes_no_time_over_a_long_range() {
+        for range in [-7..=5, -1000..=3, -5_000_000_000..=2, 0..=0, -10..=10_000_000_000] {
+            let kept: Vec<i64> = thinned(range.clone(), 240).collect();
+            assert!(kept.contains(&0) && kept.len() < 500, "{range:?}");
+            assert!(kept.iter().all(|k| range.contains(k)));
+        }
+    }
 }

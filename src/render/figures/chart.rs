@@ -247,11 +247,11 @@ impl Chart {
         self.limits.push((at, label));
     }
 
-    /// A dashed line at y along the last part of the panel; its name is a key.
-    pub fn limit_at_end(&mut self, y: f64) {
+    /// A dashed line at y from this share of the panel's width on; its name is a key.
+    pub fn unnamed_limit(&mut self, y: f64, from: f64) {
         let c = &self.computed;
         let (left, right, at) = (c.margin_left, c.width - c.margin_right, c.map_y(y));
-        self.dashed(right - 0.2 * (right - left), at, right, at);
+        self.dashed(left + from * (right - left), at, right, at);
     }
 
     /// A dashed line along the panel at y, labelled at its end.

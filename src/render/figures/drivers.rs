@@ -5,8 +5,8 @@ use super::axis::Axis;
 use super::chart::{BLUE, Chart, INK, Swatch};
 use crate::findings::{CONFIDENCE, DriverOutput, FactorFinding, Findings};
 use crate::numerics::interval::Estimate;
+use crate::render::driver_view::ranked;
 use crate::render::figures_of_speech::probability;
-use crate::render::view::ranked;
 use crate::units::number;
 
 /// Factors shown.

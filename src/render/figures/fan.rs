@@ -139,7 +139,7 @@ impl Panel<'_> {
                 let text = format!("limit {}", d.limit_text);
                 chart.horizontal_limit(self.y.shown(d.limit_value), &text);
             }
-            Some(Mark::AtEnd(d)) => chart.limit_at_end(self.y.shown(d.limit_value)),
+            Some(Mark::AtEnd(d)) => chart.unnamed_limit(self.y.shown(d.limit_value), 0.8),
             _ => {}
         }
         let mut caption = format!(

@@ -47,8 +47,8 @@ pub(super) fn figure(findings: &Findings) -> Option<Figure> {
         .enumerate()
         .map(|(k, (c, _))| (Swatch::Line(PALETTE[k], k % 2 == 1), c.factor.clone()))
         .collect();
-    let room = 0.08 * (high - low);
-    let x = Axis::linear("spread over the card's", left, right);
+    let (room, side) = (0.08 * (high - low), 0.015 * (right - left));
+    let x = Axis::linear("spread over the card's", left - side, right + side);
     let y = Axis::shares("probability of any breach", (low - room).max(0.0), high + room);
     let name = "trade-spread";
     let mut chart = Chart::new(name, HEIGHT + 30.0, &x, &y, keys, false);
