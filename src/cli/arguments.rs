@@ -104,6 +104,9 @@ pub(super) struct DescendArguments {
     /// Write the course of the descent to a Parquet file
     #[arg(long, value_name = "FILE.parquet")]
     pub trace: Option<PathBuf>,
+    /// Draw the paper's Figures 4 to 9 from this design into a directory, as SVG
+    #[arg(long, value_name = "DIR")]
+    pub figures: Option<PathBuf>,
     /// Print the outcomes as one JSON object in SI, and nothing else, on standard output
     #[arg(long)]
     pub json: bool,

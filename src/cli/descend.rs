@@ -3,12 +3,13 @@
 use super::arguments::DescendArguments;
 use super::{Ending, done};
 use crate::descent::reference::{self, REFERENCE_TOLERANCE, Sample, Trajectory};
-use crate::descent::{Model, Outcome, OutcomeQuantity};
+use crate::descent::{Fault, Model, Outcome, OutcomeQuantity};
 use crate::error::{Error, Result};
+use crate::findings;
 use crate::physics::motion::OBSERVABLES;
 use crate::physics::{Coefficients, Design};
-use crate::render::table;
-use crate::store::{Field, write_table};
+use crate::render::{paper_figures, table};
+use crate::store::{Field, write_table, write_text};
 use crate::study::Study;
 use crate::units::engineering;
 use serde_json::{Map, Value, json};
@@ -23,6 +24,9 @@ pub(super) fn descend(arguments: &DescendArguments) -> Result<Ending> {
     let study = arguments.study.load(&model.collect::<Vec<_>>())?;
     study.design.validate()?;
     let outcome = integrate(&study.design, study.model, arguments.trace.as_deref())?;
+    if let Some(directory) = &arguments.figures {
+        draw(&study.design, directory)?;
+    }
     if arguments.json {
         return done(&format!("{:#}", Value::Object(outcome_json(&outcome))));
     }
@@ -31,24 +35,38 @@ pub(super) fn descend(arguments: &DescendArguments) -> Result<Ending> {
     if let Some(path) = &arguments.trace {
         text += &format!("\ncourse of the descent: {}\n", path.display());
     }
+    if let Some(directory) = &arguments.figures {
+        text += &format!("\nfigures: {}\n", directory.display());
+    }
     done(&text)
+}
+
+/// Draws the paper's figures, from the steady solution as the paper does.
+fn draw(design: &Design, directory: &Path) -> Result<()> {
+    let runs = findings::paper_runs(design, Model::QuasiSteady).map_err(cannot_integrate)?;
+    for figure in paper_figures(&runs) {
+        write_text(&directory.join(figure.file_name()), &figure.svg)?;
+    }
+    Ok(())
+}
+
+fn cannot_integrate(fault: Fault) -> Error {
+    Error::argument(format!("the descent cannot be integrated: {}", fault.name()))
 }
 
 /// Integrates a design by the plain integrator, writing its course if asked to.
 pub(super) fn integrate(design: &Design, model: Model, trace: Option<&Path>) -> Result<Outcome> {
     let coefficients = Coefficients::new(design);
-    let fail = |fault: crate::descent::Fault| {
-        Error::argument(format!("the descent cannot be integrated: {}", fault.name()))
-    };
     let Some(path) = trace else {
-        return reference::descend(&coefficients, model, REFERENCE_TOLERANCE).map_err(fail);
+        return reference::descend(&coefficients, model, REFERENCE_TOLERANCE)
+            .map_err(cannot_integrate);
     };
     let Trajectory { samples, .. } =
         reference::trajectory(&coefficients, model, REFERENCE_TOLERANCE, TRACE_STEP_S)
-            .map_err(fail)?;
+            .map_err(cannot_integrate)?;
     write_trace(path, model, &samples)?;
     // The outcome is that of the descent without a limit on its steps, whatever is traced.
-    reference::descend(&coefficients, model, REFERENCE_TOLERANCE).map_err(fail)
+    reference::descend(&coefficients, model, REFERENCE_TOLERANCE).map_err(cannot_integrate)
 }
 
 fn write_trace(path: &Path, model: Model, samples: &[Sample]) -> Result<()> {

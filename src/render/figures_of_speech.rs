@@ -56,13 +56,13 @@ pub(super) fn value_interval(interval: &Earned, quantity: Quantity) -> String {
     }
 }
 
-/// A whole number with thin groups of three: 100 000.
+/// A whole number in groups of three, held together by no-break spaces: 100 000.
 pub(super) fn count(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);
     for (k, digit) in digits.chars().enumerate() {
         if k > 0 && (digits.len() - k).is_multiple_of(3) {
-            text.push(' ');
+            text.push('\u{a0}');
         }
         text.push(digit);
     }
@@ -75,7 +75,8 @@ mod tests {
 
     #[test]
     fn analytic_counts_are_grouped_from_the_right() {
-        let cases = [(0, "0"), (999, "999"), (1000, "1 000"), (1234567, "1 234 567")];
+        let cases =
+            [(0, "0"), (999, "999"), (1000, "1\u{a0}000"), (1234567, "1\u{a0}234\u{a0}567")];
         for (value, text) in cases {
             assert_eq!(count(value), text);
         }
