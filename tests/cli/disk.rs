@@ -134,7 +134,8 @@ fn property_a_full_disk_is_an_error_and_an_earlier_run_survives_it() {
     let before = place.bytes("run/outcomes.parquet");
     let set = "sensitivity.base_samples=0";
     let out = place.at("run");
-    let answer = reeldown(&["run", "--samples", "60000", "--set", set, "--out", &out]).ended_with(1);
+    let answer =
+        reeldown(&["run", "--samples", "60000", "--set", set, "--out", &out]).ended_with(1);
     assert!(answer.err.contains("No space left on device"), "{}", answer.err);
     assert_eq!(place.bytes("run/outcomes.parquet"), before);
     assert!(place.unfinished().is_empty(), "{:?}", place.unfinished());

@@ -135,6 +135,7 @@ impl Coverage {
         match self.share() {
             None => "unfit: says so, states no interval",
             Some((share, error)) if share + 2.0 * error < 0.93 => "FALLS SHORT",
+            Some((share, _)) if share < 0.93 => "below 93 %, within two standard errors of it",
             Some(_) if 2 * self.stated < self.seeds => "holds where stated; mostly withdrawn",
             Some(_) => "holds",
         }
