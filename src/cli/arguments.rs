@@ -1,6 +1,7 @@
 //! The command line.
 
 use crate::error::Result;
+use crate::store::read_number_column;
 use crate::study::{Override, Study};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -163,7 +164,7 @@ impl StudyArguments {
             .chain(options)
             .map(|(option, statement)| Override::parse(option, statement))
             .collect::<Result<Vec<_>>>()?;
-        Study::load(self.study.as_deref(), &overrides)
+        Study::load_with(self.study.as_deref(), &overrides, read_number_column)
     }
 
     /// A short name for the study: its file's, or its directory's if the file is called `study.toml`.

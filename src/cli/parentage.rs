@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::sampling::Design;
-use crate::store::Parentage;
+use crate::store::{Parentage, read_number_column};
 use crate::study::{Files, NamedText, Override, Study, assemble};
 use std::collections::{BTreeMap, VecDeque};
 use std::path::Path;
@@ -124,6 +124,6 @@ impl Files for Recorded {
         name: &str,
         column: &str,
     ) -> std::result::Result<Vec<f64>, String> {
-        crate::study::read_column(card, name, column)
+        crate::study::read_column(card, name, column, read_number_column)
     }
 }

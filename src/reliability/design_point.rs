@@ -1,6 +1,6 @@
 //! Design points: the breaches nearest to the origin, "the most likely way to fail".
 //!
-//! The search ([`super::design_search`]) starts at the origin and in keyed random directions, in opposite
+//! The search (`design_search`) starts at the origin and in keyed random directions, in opposite
 //! pairs; where several limits are asked for together it looks for their joint breach.
 
 use super::design_search::search;

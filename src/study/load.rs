@@ -25,13 +25,29 @@ impl Study {
     /// [`Error::File`] if the study file cannot be read; a [`crate::error::Diagnostic`] for every
     /// mistake in it, a card that cannot be read included.
     pub fn load(path: Option<&Path>, overrides: &[Override]) -> Result<Study> {
+        Study::load_with(path, overrides, refuse_parquet)
+    }
+
+    /// [`Study::load`] with a reader of Parquet columns, for empirical laws whose data is in such files.
+    ///
+    /// # Errors
+    /// As [`Study::load`].
+    pub fn load_with(
+        path: Option<&Path>,
+        overrides: &[Override],
+        parquet: ParquetColumn,
+    ) -> Result<Study> {
         match path {
             None => {
                 let study = NamedText {
                     origin: "reports/habe/study.toml (embedded)".to_owned(),
                     text: EMBEDDED_STUDY.to_owned(),
                 };
-                assemble(&study, overrides, &mut Disk { directory: PathBuf::new(), embedded: true })
+                assemble(
+                    &study,
+                    overrides,
+                    &mut Disk { directory: PathBuf::new(), embedded: true, parquet },
+                )
             }
             Some(path) => {
                 let text = read_text(path).map_err(|reason| {
@@ -40,7 +56,7 @@ impl Study {
                 })?;
                 let study = NamedText { origin: path.display().to_string(), text };
                 let directory = path.parent().map(Path::to_owned).unwrap_or_default();
-                assemble(&study, overrides, &mut Disk { directory, embedded: false })
+                assemble(&study, overrides, &mut Disk { directory, embedded: false, parquet })
             }
         }
     }
@@ -50,6 +66,7 @@ impl Study {
 struct Disk {
     directory: PathBuf,
     embedded: bool,
+    parquet: ParquetColumn,
 }
 
 impl Files for Disk {
@@ -71,20 +88,34 @@ impl Files for Disk {
         name: &str,
         column: &str,
     ) -> std::result::Result<Vec<f64>, String> {
-        read_column(card, name, column)
+        read_column(card, name, column, self.parquet)
     }
 }
 
-/// The numbers of a column of the CSV file `name` that the card called `card` names: found relative to
+/// Reads a column of numbers from a Parquet file; a failure is its reason, in a few words. Only a higher
+/// floor knows Parquet, so it hands the reader in.
+pub type ParquetColumn = fn(&Path, &str) -> std::result::Result<Vec<f64>, String>;
+
+/// The reader where there is none.
+fn refuse_parquet(_: &Path, _: &str) -> std::result::Result<Vec<f64>, String> {
+    Err("Parquet is not read here: export the column as CSV".to_owned())
+}
+
+/// The numbers of a column of the CSV or Parquet file `name` that the card called `card` names: found relative to
 /// the card, or to the working directory for an embedded one.
 ///
 /// # Errors
 /// Why the column cannot be read, in a few words.
-pub fn read_column(card: &str, name: &str, column: &str) -> std::result::Result<Vec<f64>, String> {
+pub fn read_column(
+    card: &str,
+    name: &str,
+    column: &str,
+    parquet: ParquetColumn,
+) -> std::result::Result<Vec<f64>, String> {
     let directory = Path::new(card).parent().filter(|_| !card.ends_with(" (embedded)"));
     let path = directory.unwrap_or(Path::new("")).join(name);
     if path.extension().is_some_and(|ending| ending == "parquet") {
-        return Err("columns are read from CSV; export the Parquet column".to_owned());
+        return parquet(&path, column);
     }
     empirical::column(&read_text(&path)?, column)
 }

@@ -30,7 +30,7 @@ use crate::sampling;
 use crate::uncertainty::{Joint, Marginal, Measure};
 
 pub use assemble::{Files, NamedText, assemble};
-pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, read_column};
+pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, ParquetColumn, read_column};
 pub use overrides::Override;
 pub use resolved::{ResolvedParameter, UncertainLaw};
 pub use tighten::{DesignRange, Grade, TightenPlan, TighteningCost, TradePlan};

@@ -110,3 +110,28 @@ fn property_help_and_version_are_answers() {
     let version = reeldown(&["--version"]).ended_with(0);
     assert_eq!(version.out.trim(), concat!("reeldown ", env!("CARGO_PKG_VERSION")));
 }
+
+#[test]
+fn property_an_empirical_law_reads_a_column_of_a_parquet_file() {
+    let place = Place::new("empirical");
+    let trace = place.at("readings.parquet");
+    reeldown(&["descend", "--trace", &trace]).ended_with(0);
+    let card = "[fluid.shear_factor]\nlaw = \"empirical\"\nfile = \"readings.parquet\"\n\
+                column = \"velocity_m_per_s\"\nknown = \"never\"\nsource = \"a trace\"\n";
+    std::fs::write(place.path().join("card.toml"), card).expect("a card");
+    let study = "title = \"empirical\"\ncard = \"card.toml\"\n";
+    std::fs::write(place.path().join("study.toml"), study).expect("a study");
+    let answer = reeldown(&["check", "--json", &place.at("study.toml")]).ended_with(0);
+    let shown: serde_json::Value = serde_json::from_str(&answer.out).expect("JSON");
+    let mean = shown["inputs"]
+        .as_array()
+        .expect("inputs")
+        .iter()
+        .find(|input| input["path"] == "fluid.shear_factor")
+        .and_then(|input| input["uncertain"]["mean"].as_f64())
+        .expect("an uncertain input");
+    let readings = read_number_column(Path::new(&trace), "velocity_m_per_s").expect("numbers");
+    let (low, high) =
+        readings.iter().fold((f64::INFINITY, 0.0f64), |(l, h), &v| (l.min(v), h.max(v)));
+    assert!(low < mean && mean < high, "{low} {mean} {high}");
+}
