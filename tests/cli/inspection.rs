@@ -116,8 +116,8 @@ fn property_an_empirical_law_reads_a_column_of_a_parquet_file() {
     let place = Place::new("empirical");
     let trace = place.at("readings.parquet");
     reeldown(&["descend", "--trace", &trace]).ended_with(0);
-    let card = "[fluid.shear_factor]\nlaw = \"empirical\"\nfile = \"readings.parquet\"\n\
-                column = \"velocity_m_per_s\"\nknown = \"never\"\nsource = \"a trace\"\n";
+    let card = "[initial.temperature]\nlaw = \"empirical\"\nfile = \"readings.parquet\"\n\
+                column = \"fluid_temperature_k\"\nknown = \"on the day\"\nsource = \"a trace\"\n";
     std::fs::write(place.path().join("card.toml"), card).expect("a card");
     let study = "title = \"empirical\"\ncard = \"card.toml\"\n";
     std::fs::write(place.path().join("study.toml"), study).expect("a study");
@@ -127,10 +127,10 @@ fn property_an_empirical_law_reads_a_column_of_a_parquet_file() {
         .as_array()
         .expect("inputs")
         .iter()
-        .find(|input| input["path"] == "fluid.shear_factor")
+        .find(|input| input["path"] == "initial.temperature")
         .and_then(|input| input["uncertain"]["mean"].as_f64())
         .expect("an uncertain input");
-    let readings = read_number_column(Path::new(&trace), "velocity_m_per_s").expect("numbers");
+    let readings = read_number_column(Path::new(&trace), "fluid_temperature_k").expect("numbers");
     let (low, high) =
         readings.iter().fold((f64::INFINITY, 0.0f64), |(l, h), &v| (l.min(v), h.max(v)));
     assert!(low < mean && mean < high, "{low} {mean} {high}");
