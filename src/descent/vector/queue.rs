@@ -90,6 +90,7 @@ pub fn run<V: Lanes, M: Model<V, N>, const N: usize>(
     counts
 }
 
+#[inline(always)]
 fn load<V: Lanes, M: Model<V, N>, const N: usize>(
     group: &mut Group<V, M, N>,
     lane: usize,
