@@ -144,8 +144,7 @@ impl<V: Lanes> System<V, STATES> for QuasiSteady<V> {
         // (1 − v_l d − v b h) u_v = v_l hγ r_l + v b (Σ τ_j r_j + τ_l r_l)
         let vb = m.v * m.b;
         let heat_tv_v = thermal::blend(eps, heat_by_v[0], heat_by_v[1]);
-        let pivot =
-            vb.neg_mul_add(heat_tv_v, m.v_line.neg_mul_add(line_by_v, one));
+        let pivot = vb.neg_mul_add(heat_tv_v, m.v_line.neg_mul_add(line_by_v, one));
         let inverse_pivot = one / pivot;
         let scaled_vb = vb * inverse_pivot;
         let weights = [
