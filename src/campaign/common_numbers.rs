@@ -309,7 +309,7 @@ impl<'a> CommonSample<'a> {
                 if input.target == target {
                     let changed = marginals.iter().position(|(k, _)| *k == j);
                     let law = changed.map_or(&input.marginal, |at| &marginals[at].1);
-                    let moved = law.with_shifted_mean(value - law.law().mean())?;
+                    let moved = law.with_shifted_mean(value - law.law().anchor())?;
                     marginals.retain(|(k, _)| *k != j);
                     marginals.push((j, moved));
                 }

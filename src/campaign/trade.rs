@@ -301,6 +301,10 @@ fn central_difference(
     }
     let law = study.inputs[first].marginal.law();
     let step = STEP * if parameter == Parameter::Mean { law.sd() } else { law.spread() };
+    // The law of a few readings may have no standard deviation to step by.
+    if !step.is_finite() {
+        return Ok(None);
+    }
     let side = |delta: f64| -> Result<Breaches> {
         let mut change = Change::default();
         for &j in columns {

@@ -28,7 +28,7 @@ mod vocabulary;
 use crate::descent::{Model, Outcome, OutcomeQuantity};
 use crate::physics::design::{Design, Target};
 use crate::sampling;
-use crate::uncertainty::{Joint, Marginal, Measure};
+use crate::uncertainty::{Joint, Marginal, Measure, Readings};
 
 pub use assemble::{Files, NamedText, assemble};
 pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, Parquet, read_column, read_sample};
@@ -93,6 +93,8 @@ pub struct Input {
     pub target: Target,
     /// Its distribution, SI.
     pub marginal: Marginal,
+    /// The readings that the distribution predicts from, if it is made of some.
+    pub readings: Option<Readings>,
     /// When its value becomes known.
     pub known: Known,
     /// Where the distribution comes from.
