@@ -113,7 +113,7 @@ fn cost_text(cost: &TighteningCost) -> Option<String> {
 }
 
 /// SHA-256 of a text, in hexadecimal.
-fn of_text(text: &str) -> String {
+pub(super) fn of_text(text: &str) -> String {
     of_bytes(text.as_bytes())
 }
 
