@@ -15,6 +15,7 @@ mod law;
 mod laws;
 mod load;
 mod overrides;
+mod pairs;
 mod place;
 mod read;
 mod resolved;
@@ -243,12 +244,14 @@ pub struct Numerics {
 }
 
 /// How the sensitivity indices are estimated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SensitivityPlan {
     /// Rows of each block of the pick-freeze design; 0 leaves the indices out.
     pub base_samples: u64,
     /// Number of bootstrap resamples behind each interval.
     pub bootstrap: u32,
+    /// Pairs of inputs, by path or group, whose second-order index is asked for.
+    pub pairs: Vec<(String, String)>,
 }
 
 /// How small probabilities are estimated.
