@@ -115,6 +115,14 @@ impl Breaches {
         self.breached.len()
     }
 
+    /// Some of the rows, in their order.
+    pub fn part(&self, rows: Range<usize>) -> Self {
+        Breaches {
+            breached: self.breached[rows.clone()].to_vec(),
+            unknown: self.unknown[rows].to_vec(),
+        }
+    }
+
     /// Whether the event happened in row `k`; `None` where that is not known.
     pub fn happened(&self, event: Event, k: usize) -> Option<bool> {
         let mask = match event {
@@ -195,6 +203,27 @@ impl<'a> CommonSample<'a> {
         Self::drawn(study, &sampler, 0..rows)
     }
 
+    /// The study's own points of these indices, ascending.
+    ///
+    /// # Errors
+    /// What [`sampler`] refuses, and an index beyond the design.
+    pub fn of_rows(study: &'a Study, rows: &[usize]) -> Result<Self> {
+        let sampler = sampler(study)?;
+        let mut uniforms = Columns::new(rows.len(), study.joint.dimension());
+        let mut start = 0;
+        while start < rows.len() {
+            let next = rows[start..].windows(2).take_while(|pair| pair[1] == pair[0] + 1);
+            let run = next.count() + 1;
+            let mut block = Columns::new(run, uniforms.columns());
+            sampler.fill(rows[start] as u64, &mut block)?;
+            for j in 0..uniforms.columns() {
+                uniforms.column_mut(j)[start..start + run].copy_from_slice(block.column(j));
+            }
+            start += run;
+        }
+        Ok(Self::at(study, sampler.replicates() as usize, uniforms))
+    }
+
     /// Independent points of a purpose's stream, by their indices.
     ///
     /// # Errors
@@ -210,6 +239,11 @@ impl<'a> CommonSample<'a> {
         let count = rows.end.saturating_sub(rows.start) as usize;
         let mut uniforms = Columns::new(count, study.joint.dimension());
         sampler.fill(rows.start, &mut uniforms)?;
+        Ok(Self::at(study, sampler.replicates() as usize, uniforms))
+    }
+
+    /// The draws at points of the unit cube.
+    fn at(study: &'a Study, replicates: usize, uniforms: Columns) -> Self {
         let points = match study.joint.copula() {
             None => uniforms,
             Some(copula) => {
@@ -223,7 +257,6 @@ impl<'a> CommonSample<'a> {
                 correlated
             }
         };
-        let replicates = sampler.replicates() as usize;
         let inputs = Columns::new(points.rows(), points.columns());
         let mut sample = CommonSample { study, replicates, points, inputs };
         let columns: Vec<usize> = (0..study.inputs.len()).filter(|&j| sample.is_alone(j)).collect();
@@ -232,7 +265,7 @@ impl<'a> CommonSample<'a> {
             sample.inputs.column_mut(j).copy_from_slice(column);
         }
         sample.fill_drawn_together();
-        Ok(sample)
+        sample
     }
 
     /// Writes the inputs that are drawn together with others.
@@ -263,6 +296,15 @@ impl<'a> CommonSample<'a> {
     /// The unchanged inputs, SI.
     pub fn inputs(&self) -> &Columns {
         &self.inputs
+    }
+
+    /// The normal scores Φ⁻¹(F(x)) of an input.
+    pub fn normal_scores(&self, j: usize) -> Vec<f64> {
+        let mut scores = self.points.column(j).to_vec();
+        if self.study.joint.copula().is_none() {
+            crate::numerics::special::normal::quantile_column(self.points.column(j), &mut scores);
+        }
+        scores
     }
 
     /// Input `j` under the law `marginal`. One that is drawn together with others keeps the rank that its row
@@ -410,7 +452,7 @@ impl<'a> CommonSample<'a> {
     }
 
     /// The breaches at draws of the study.
-    pub fn at(&self, inputs: &Columns, progress: &Progress) -> Breaches {
+    pub fn breaches_at(&self, inputs: &Columns, progress: &Progress) -> Breaches {
         Breaches::of(self.study, &Ensemble::new(self.study).at_inputs(inputs, progress))
     }
 }

@@ -9,6 +9,7 @@ mod output;
 mod parentage;
 mod replay;
 mod run;
+mod sensitivity_table;
 mod tighten;
 mod trade_tables;
 mod watch;

@@ -4,8 +4,10 @@ mod driver_view;
 mod figures;
 mod figures_of_speech;
 mod html;
+mod json;
 mod known_view;
 mod markdown;
+mod measures_view;
 mod tables;
 mod terminal;
 mod tighten;
@@ -14,6 +16,7 @@ mod view;
 
 pub use figures::{Figure, ReportFigures, figures, paper_figures};
 pub use html::html;
+pub use json::json;
 pub use markdown::markdown;
 pub use tables::table;
 pub use terminal::{Style, terminal};

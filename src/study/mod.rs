@@ -16,6 +16,7 @@ mod laws;
 mod load;
 pub mod measured_run;
 mod overrides;
+mod pairs;
 mod place;
 mod read;
 mod resolved;
@@ -266,12 +267,14 @@ pub struct Numerics {
 }
 
 /// How the sensitivity indices are estimated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SensitivityPlan {
     /// Rows of each block of the pick-freeze design; 0 leaves the indices out.
     pub base_samples: u64,
     /// Number of bootstrap resamples behind each interval.
     pub bootstrap: u32,
+    /// Pairs of inputs, by path or group, whose second-order index is asked for.
+    pub pairs: Vec<(String, String)>,
 }
 
 /// How small probabilities are estimated.
