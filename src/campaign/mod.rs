@@ -14,6 +14,7 @@ mod rare;
 mod record;
 pub mod scores;
 pub mod shapley;
+pub mod sweep;
 pub mod tighten;
 pub mod trade;
 mod verification;

@@ -9,6 +9,7 @@ mod output;
 mod parentage;
 mod replay;
 mod run;
+mod sweep;
 mod tighten;
 mod trade_tables;
 mod watch;
@@ -63,6 +64,7 @@ fn carry_out(arguments: Arguments) -> Result<Ending> {
         None => run::run(&arguments.run),
         Some(Command::Run(run)) => run::run(&run),
         Some(Command::Descend(descend)) => descend::descend(&descend),
+        Some(Command::Sweep(sweep)) => sweep::sweep(&sweep),
         Some(Command::Tighten(tighten)) => tighten::tighten(&tighten),
         Some(Command::Replay(replay)) => replay::replay(&replay),
         Some(Command::Check(check)) => check::check(&check),

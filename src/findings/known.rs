@@ -153,12 +153,12 @@ fn go_map(study: &Study, map: &Map) -> Result<GoMap> {
     })
 }
 
-fn stated(study: &Study) -> Result<Option<Requirement>> {
+pub(super) fn stated(study: &Study) -> Result<Option<Requirement>> {
     let stated = study.requirement;
     stated.map(|stated| Requirement::new(stated.reliability, stated.confidence)).transpose()
 }
 
-fn answer(requirement: Option<&Requirement>, counts: &Proportion) -> Result<GoAnswer> {
+pub(super) fn answer(requirement: Option<&Requirement>, counts: &Proportion) -> Result<GoAnswer> {
     let Some(requirement) = requirement else { return Ok(GoAnswer::NoRequirement) };
     Ok(match requirement.verdict(counts)?.verdict {
         Verdict::Met => GoAnswer::Go,

@@ -14,6 +14,7 @@ mod probabilities;
 mod rare;
 mod sequence;
 pub mod shapley;
+pub mod sweep;
 pub mod tighten;
 pub mod trade;
 

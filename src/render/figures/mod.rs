@@ -17,6 +17,7 @@
 
 mod axis;
 mod chart;
+mod contour;
 mod convergence;
 mod distribution;
 mod drivers;
@@ -25,11 +26,14 @@ mod go;
 mod interaction;
 mod paper;
 mod svg;
+mod sweep;
+mod sweep_map;
 mod trade;
 
 use crate::findings::Findings;
 
 pub use paper::paper_figures;
+pub use sweep::sweep_figures;
 
 /// One figure.
 #[derive(Debug, Clone, PartialEq)]
