@@ -18,7 +18,7 @@ use crate::study::{Known, Over, Study};
 /// Groups of rows from which the error of a best setting is read.
 pub const GROUPS: usize = 20;
 /// Descents that a sweep shares among its cells unless told otherwise.
-const BUDGET: u64 = 4_000_000;
+const BUDGET: u64 = 8_000_000;
 /// Samples of a cell unless told otherwise: at least and at most.
 const USUAL: (u64, u64) = (1000, 100_000);
 /// Shares of the quantiles of a limited outcome.
@@ -251,7 +251,7 @@ mod tests {
 
     #[test]
     fn analytic_samples_share_a_budget() {
-        assert_eq!(usual_samples(693), 5700);
+        assert_eq!(usual_samples(693), 11_000);
         assert_eq!(usual_samples(33), 100_000);
         assert_eq!(usual_samples(10_000), 1000);
     }

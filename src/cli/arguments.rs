@@ -130,7 +130,7 @@ pub(super) struct SweepArguments {
     /// else that is uncertain]
     #[arg(long, value_name = "PATH")]
     pub centre: Vec<String>,
-    /// Samples in each cell, the same points in all of them [default: 4 million descents shared among the
+    /// Samples in each cell, the same points in all of them [default: 8 million descents shared among the
     /// cells, at most 100000 a cell]
     #[arg(long, value_name = "N", conflicts_with = "nominal")]
     pub samples: Option<String>,

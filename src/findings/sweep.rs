@@ -279,8 +279,9 @@ fn method(study: &Study, samples: Option<u64>, required: Option<&Requirement>) -
             100.0 * CONFIDENCE
         ));
         lines.push(
-            "Best values: the least point of a parabola through ln P about the smallest P, its interval by \
-             leaving out one of 20 groups of samples at a time."
+            "Best values: the least point of a parabola through ln P about the smallest P; its interval is by \
+             leaving out one of 20 groups of samples at a time, and as much wider as the parabola through \
+             the three nearest settings differs."
                 .to_owned(),
         );
     }
@@ -435,7 +436,7 @@ fn least(xs: &[f64], sampled: &[&Sampled]) -> (Estimate, Option<usize>) {
         return (Estimate { value: Some(value), standard_error: None, interval }, Some(middle));
     }
     // The parabola is asked where P is of the order of its least value, five settings at least.
-    let near = |k: usize| worst[k] <= 3 * smallest + 5;
+    let near = |k: usize| 2 * worst[k] <= 3 * smallest + 10;
     let (mut from, mut to) = (middle, middle);
     while from > 0 && near(from - 1) {
         from -= 1;
@@ -454,7 +455,18 @@ fn least(xs: &[f64], sampled: &[&Sampled]) -> (Estimate, Option<usize>) {
         };
         sampled[from..=to].iter().map(kept).collect()
     };
-    let estimate = best_value(&xs[from..=to], &shares, (xs[0], xs[xs.len() - 1]));
+    let mut estimate = best_value(&xs[from..=to], &shares, (xs[0], xs[xs.len() - 1]));
+    if let (Some(wide), Earned::Interval(interval)) = (estimate.value, &mut estimate.interval) {
+        // What a parabola is not shows in how far that through the nearest three settings differs.
+        let three = (middle - from).saturating_sub(1)..=(middle - from + 1).min(to - from);
+        let narrow = |left_out: Option<usize>| shares(left_out)[three.clone()].to_vec();
+        let settings = &xs[from..=to][three.clone()];
+        let other = best_value(settings, &narrow, (xs[0], xs[xs.len() - 1])).value;
+        let apart = other.map_or(0.0, |other| (other - wide).abs());
+        interval.lower -= apart;
+        interval.upper += apart;
+        interval.method = "parabola through ln P, delete-a-group jackknife, and its own misfit";
+    }
     let nearest = estimate.value.and_then(|value| {
         places.into_iter().min_by(|&a, &b| (xs[a] - value).abs().total_cmp(&(xs[b] - value).abs()))
     });
@@ -488,6 +500,44 @@ fn courses(study: &Study, grid: &Grid) -> Vec<CourseFinding> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::elementary::exp;
+
+    #[test]
+    fn analytic_the_least_point_of_a_parabola_is_found_and_ends_have_no_interval() {
+        // ln P is a parabola about 103, the same counts in every group.
+        let cells = |centre: f64| -> Vec<Sampled> {
+            let part = |x: f64| {
+                let share = 0.01 * exp((x - centre) * (x - centre) / 400.0);
+                Proportion { breaches: (share * 1e6) as u64, faults: 0, samples: 1_000_000 }
+            };
+            let cell = |k: usize| {
+                let group = part(80.0 + 5.0 * k as f64);
+                let any = Proportion {
+                    breaches: 20 * group.breaches,
+                    faults: 0,
+                    samples: 20 * group.samples,
+                };
+                Sampled {
+                    any,
+                    limits: Vec::new(),
+                    groups: vec![group; GROUPS],
+                    quantiles: Vec::new(),
+                }
+            };
+            (0..9).map(cell).collect()
+        };
+        let xs: Vec<f64> = (0..9).map(|k| 80.0 + 5.0 * k as f64).collect();
+        let found = |centre: f64| {
+            let cells = cells(centre);
+            least(&xs, &cells.iter().collect::<Vec<_>>())
+        };
+        let (best, at) = found(103.0);
+        assert!((best.value.unwrap() - 103.0).abs() < 0.01, "{best:?}");
+        assert_eq!(at, Some(5));
+        let (best, at) = found(60.0);
+        assert_eq!((best.value, at), (Some(80.0), Some(0)));
+        assert!(best.interval.why_none().unwrap().contains("end of its range"));
+    }
 
     #[test]
     fn analytic_runs_and_crossings_of_a_margin() {

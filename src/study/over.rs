@@ -63,8 +63,9 @@ impl Over {
             let digits = written.trim_start_matches(|c: char| "+-−.eE_0123456789".contains(c));
             digits.trim().to_owned()
         };
-        let from = end_value(&first, quantity, &unit(&last))?;
+        // A unit that only the last end has is at fault there.
         let to = end_value(&last, quantity, &unit(&first))?;
+        let from = end_value(&first, quantity, &unit(&last))?;
         let count = number_of_values(&place(colon + 1..statement.len()))?;
         let range = place(equals + 1..statement.len());
         let over = Over { target, from, to, count, path, range };

@@ -113,6 +113,10 @@ impl Chart {
             layout = layout.with_y_categories(rows);
         }
         let mut computed = ComputedLayout::from_layout(&layout);
+        // kuva takes the width of the ticks on a logarithmic axis for that of its ends.
+        let wider = (text_width(&y.widest_decade()) - computed.y_tick_label_px).max(0.0);
+        computed.y_tick_label_px += wider;
+        computed.margin_left += wider;
         let lines = key_rows(&keys, WIDTH - 16.0).len() as f64;
         let header = 6.0 + lines * ROW;
         computed.margin_top = header + if vertical_limits { ROW + 4.0 } else { 6.0 };

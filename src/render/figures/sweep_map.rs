@@ -299,15 +299,23 @@ impl<'s> Map<'s> {
             chart.band(part, BLUE, 0.35);
         }
         chart.line(&points, BLUE, 1.6, false);
-        chart.dots(&points, BLUE, 3.0, 1.0);
+        chart.dots(&points, BLUE, 3.2, 1.0);
+        // A best value without an interval is hollow: mostly an end of the swept range.
+        let hollow: Vec<Point> = sweep
+            .best
+            .iter()
+            .filter(|best| best.best.interval.interval().is_none())
+            .filter_map(|best| place(best, best.best.value?))
+            .collect();
+        chart.dots(&hollow, "#ffffff", 2.0, 1.0);
         if let Some((x, y)) = self.present() {
             chart.dots(&[(y, x)], INK, 6.0, 1.0);
             chart.dots(&[(y, x)], "#ffffff", 3.6, 1.0);
         }
         let title = format!("The best {} for each {}", self.across.path, self.upward.path);
         let caption =
-            "Where P(any breach) is least, with its interval; a best value at an end of the swept \
-                       range has none."
+            "Where P(any breach) is least, with its interval; hollow where there is none, as at an \
+                       end of the swept range."
                 .to_owned();
         let (first, last) = (sweep.best.first()?, sweep.best.last()?);
         let words = |best: &BestFinding| {
