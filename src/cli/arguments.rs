@@ -27,6 +27,8 @@ pub(super) enum Command {
     Run(RunArguments),
     /// Compute one nominal descent and show its outcomes
     Descend(DescendArguments),
+    /// Say what changed between two finished runs: inputs, probabilities, margins, drivers
+    Compare(CompareArguments),
     /// Map the design space along one or two paths: outcomes, margins, probabilities, best values
     Sweep(SweepArguments),
     /// Find the cheapest tightenings and design change that meet a target, and confirm them
@@ -111,6 +113,22 @@ pub(super) struct DescendArguments {
     #[arg(long, value_name = "DIR")]
     pub figures: Option<PathBuf>,
     /// Print the outcomes as one JSON object in SI, and nothing else, on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CompareArguments {
+    /// Directory of the run before
+    #[arg(value_name = "RUN_A")]
+    pub before: PathBuf,
+    /// Directory of the run after
+    #[arg(value_name = "RUN_B")]
+    pub after: PathBuf,
+    /// Write the comparison as Markdown too
+    #[arg(long, value_name = "FILE")]
+    pub markdown: Option<PathBuf>,
+    /// Print the comparison as one JSON object in SI, and nothing else, on standard output
     #[arg(long)]
     pub json: bool,
 }

@@ -270,7 +270,9 @@ impl Pairing {
         let plain = (a.design == Design::MonteCarlo, b.design == Design::MonteCarlo);
         if a.seed != b.seed {
             return match plain {
-                (true, true) => none(true, "Not paired: the seeds differ, so the samples are independent."),
+                (true, true) => {
+                    none(true, "Not paired: the seeds differ, so the samples are independent.")
+                }
                 _ => none(
                     false,
                     "Not paired, and the differences have no interval: the seeds differ, and the points of a \
@@ -321,8 +323,9 @@ impl Pairing {
         let share = |of: &Breaches, event: Event| match self.replicates {
             1 => proportion(&of.count(event)),
             several => {
-                let counts: Vec<_> =
-                    (0..several).map(|r| of.counts(event, (r..of.rows()).step_by(several))).collect();
+                let counts: Vec<_> = (0..several)
+                    .map(|r| of.counts(event, (r..of.rows()).step_by(several)))
+                    .collect();
                 Ok(from_replicate_counts(&counts, CONFIDENCE)?.probability)
             }
         };

@@ -16,8 +16,7 @@ pub(super) fn changes(before: &Study, after: &Study) -> Vec<ChangeFinding> {
     let model = |study: &Study| Some(study.model.name().to_owned());
     add("model", "equations of motion", model(before), model(after));
     let (first, second) = (before.resolved(), after.resolved());
-    let mut paths: Vec<&str> =
-        first.iter().chain(&second).map(|row| row.path.as_str()).collect();
+    let mut paths: Vec<&str> = first.iter().chain(&second).map(|row| row.path.as_str()).collect();
     let mut seen = Vec::new();
     paths.retain(|path| {
         let new = !seen.contains(path);
@@ -36,7 +35,8 @@ pub(super) fn changes(before: &Study, after: &Study) -> Vec<ChangeFinding> {
         let law = |rows: &[crate::study::ResolvedParameter]| {
             let row = rows.iter().find(|row| row.path == *path)?;
             let law = row.uncertain.as_ref()?;
-            let many = if law.inputs > 1 { format!(", {} inputs", law.inputs) } else { String::new() };
+            let many =
+                if law.inputs > 1 { format!(", {} inputs", law.inputs) } else { String::new() };
             Some(format!("{}{many}; known {}", law.law, law.known.name()))
         };
         add("law", path, law(&first), law(&second));

@@ -1,11 +1,13 @@
 //! Findings as text and figures: a terminal summary, a Markdown and an HTML report, SVG. Returns strings; writes and prints nothing.
 
+mod compare;
 mod driver_view;
 mod figures;
 mod figures_of_speech;
 mod html;
 mod known_view;
 mod markdown;
+mod sketch;
 mod sweep;
 mod tables;
 mod terminal;
@@ -13,6 +15,7 @@ mod tighten;
 mod trade_view;
 mod view;
 
+pub use compare::{compare_markdown, compare_terminal};
 pub use figures::{Figure, ReportFigures, figures, paper_figures, sweep_figures};
 pub use html::html;
 pub use markdown::markdown;
