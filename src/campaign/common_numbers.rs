@@ -342,6 +342,14 @@ impl<'a> CommonSample<'a> {
     /// # Errors
     /// If a design value does not fit an input's law.
     pub fn changed(&self, change: &Change, progress: &Progress) -> Result<Breaches> {
+        Ok(Breaches::of(self.study, &self.table(change, progress)?))
+    }
+
+    /// What becomes of a variant of the study at these points.
+    ///
+    /// # Errors
+    /// As [`Self::changed`].
+    pub fn table(&self, change: &Change, progress: &Progress) -> Result<OutcomeTable> {
         let mut study = self.study.clone();
         let mut inputs = self.inputs.clone();
         let mut marginals = change.marginals.clone();
@@ -363,8 +371,7 @@ impl<'a> CommonSample<'a> {
         if !change.known.is_empty() {
             self.condition(&change.known, &marginals, &mut inputs)?;
         }
-        let table = Ensemble::new(&study).at_inputs(&inputs, progress);
-        Ok(Breaches::of(&study, &table))
+        Ok(Ensemble::new(&study).at_inputs(&inputs, progress))
     }
 
     /// Gives every row the known values, and the inputs that depend on them their laws given those.

@@ -16,6 +16,7 @@ mod record;
 pub mod scores;
 pub mod screening;
 pub mod shapley;
+pub mod sweep;
 pub mod tighten;
 pub mod trade;
 mod verification;
