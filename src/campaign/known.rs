@@ -137,7 +137,8 @@ pub fn run_known(
         ([first], Some(lot)) => Some((*first, Second::Lot(lot))),
         _ => None,
     };
-    let map = map.map(|(first, beside)| map_of(study, first, beside, rows, progress)).transpose()?;
+    let map =
+        map.map(|(first, beside)| map_of(study, first, beside, rows, progress)).transpose()?;
     Ok(Some(KnownOutcomes { stages, charts, map, samples: rows }))
 }
 

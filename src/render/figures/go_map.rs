@@ -93,7 +93,10 @@ pub(super) fn figure(map: &GoMap) -> Option<Figure> {
             probability(confidence),
             count(map.samples)
         ),
-        _ => format!("P(any breach) given both values, {} descents in each cell.", count(map.samples)),
+        _ => format!(
+            "P(any breach) given both values, {} descents in each cell.",
+            count(map.samples)
+        ),
     };
     let alternative = format!(
         "Map of {} cells: go in {}, undecided in {}, no go in {}.",
