@@ -2,6 +2,7 @@
 //! JSON holds. Numbers are SI; the renderer chooses units.
 
 pub mod compare;
+mod compare_findings;
 mod compare_studies;
 mod demonstration;
 pub mod derivatives;
@@ -17,6 +18,7 @@ mod rare;
 mod sequence;
 pub mod shapley;
 pub mod sweep;
+pub mod sweep_best;
 pub mod tighten;
 pub mod trade;
 
