@@ -94,21 +94,19 @@ fn outer(rows: u64) -> u64 {
 }
 
 fn measured(study: &Study) -> Vec<usize> {
-    let on_the_day = |&j: &usize| study.inputs[j].known == Known::OnTheDay;
+    // Rows of a joint sample say nothing of the others' laws at a value that no row has.
+    let on_the_day =
+        |&j: &usize| study.inputs[j].known == Known::OnTheDay && study.joint.sample_of(j).is_none();
     (0..study.inputs.len()).filter(on_the_day).collect()
 }
 
-/// Computes what is known when, with no more effort than the `available` samples of the run deserve. `None` if the study asks for no trade, has no limit, or `progress` asks
-/// for a stop.
+/// Computes what is known when, on no more samples than the study has at most, wherever it stopped. `None` if
+/// the study asks for no trade, has no limit, or `progress` asks for a stop.
 ///
 /// # Errors
 /// If the inputs' dependence cannot be conditioned.
-pub fn run_known(
-    study: &Study,
-    available: u64,
-    progress: &Progress,
-) -> Result<Option<KnownOutcomes>> {
-    let rows = study.trade.samples.min(available);
+pub fn run_known(study: &Study, progress: &Progress) -> Result<Option<KnownOutcomes>> {
+    let rows = study.trade.samples.min(study.sampling.samples);
     if rows == 0 || study.limits.is_empty() {
         return Ok(None);
     }
@@ -229,7 +227,7 @@ fn stage(
     let rows = outer * INNER as u64;
     let continuations = CommonSample::independent(study, outer..outer + rows, Purpose::Known)?;
     let draws: Columns = sets.mixed(given, |k| k / INNER, &continuations)?;
-    let found = sets.at(&draws, progress);
+    let found = sets.breaches_at(&draws, progress);
     let breaches = (0..outer as usize)
         .map(|set| {
             let counts = found.counts(Event::Any, set * INNER..(set + 1) * INNER);

@@ -10,6 +10,7 @@ mod output;
 mod parentage;
 mod replay;
 mod run;
+mod sensitivity_table;
 mod sweep;
 mod tighten;
 mod trade_tables;

@@ -13,4 +13,5 @@ mod published;
 mod readers;
 mod replaying;
 mod sweeping;
+mod together;
 mod verdicts;
