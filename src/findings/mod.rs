@@ -2,6 +2,7 @@
 //! JSON holds. Numbers are SI; the renderer chooses units.
 
 pub mod compare;
+mod compare_findings;
 mod compare_studies;
 mod demonstration;
 pub mod derivatives;
@@ -18,6 +19,7 @@ mod rare;
 mod sequence;
 pub mod shapley;
 pub mod sweep;
+pub mod sweep_best;
 pub mod tighten;
 pub mod trade;
 

@@ -25,6 +25,7 @@ mod fan;
 mod go;
 mod go_map;
 mod interaction;
+mod key;
 mod paper;
 mod svg;
 mod sweep;

@@ -2,7 +2,8 @@
 
 use super::Figure;
 use super::axis::Axis;
-use super::chart::{Chart, HEIGHT, PALETTE, Swatch};
+use super::chart::{Chart, HEIGHT, PALETTE};
+use super::key::Swatch;
 use crate::findings::Findings;
 use crate::findings::trade::TradeCurve;
 use crate::render::figures_of_speech::probability;
