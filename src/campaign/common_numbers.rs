@@ -288,6 +288,25 @@ impl<'a> CommonSample<'a> {
         &self.inputs
     }
 
+    /// Some of the points, as a sample of their own.
+    pub fn rows_of(&self, rows: &[u32]) -> CommonSample<'a> {
+        let gather = |from: &Columns| {
+            let mut columns = Columns::new(rows.len(), from.columns());
+            for j in 0..from.columns() {
+                let own = from.column(j);
+                let into = columns.column_mut(j).iter_mut();
+                into.zip(rows).for_each(|(value, &row)| *value = own[row as usize]);
+            }
+            columns
+        };
+        CommonSample {
+            study: self.study,
+            replicates: self.replicates,
+            points: gather(&self.points),
+            inputs: gather(&self.inputs),
+        }
+    }
+
     /// The normal scores Φ⁻¹(F(x)) of an input.
     pub fn normal_scores(&self, j: usize) -> Vec<f64> {
         let mut scores = self.points.column(j).to_vec();
