@@ -344,7 +344,9 @@ impl<'a> CommonSample<'a> {
         for &(target, value) in &change.design {
             study.design.set(target, value);
             for (j, input) in self.study.inputs.iter().enumerate() {
-                if input.target == target {
+                // A whole gap is the mean of every surface's.
+                let whole = target.surface.is_none() && input.target.parameter == target.parameter;
+                if whole || input.target == target {
                     let changed = marginals.iter().position(|(k, _)| *k == j);
                     let law = changed.map_or(&input.marginal, |at| &marginals[at].1);
                     let moved = law.with_shifted_mean(value - law.law().mean())?;

@@ -217,11 +217,12 @@ fn proof_of(found: &Tightening, proof: &Proof) -> ProofFinding {
     );
     let statement = match proof.complete {
         true if proof.none_below >= cost - 1e-9 => format!(
-            "Exhaustive search over half halvings and purchasable grades: the plan is the cheapest. {on}."
+            "Exhaustive search: no plan of half halvings and purchasable grades costs less than {cost:.2} and reaches the \
+             aim; spreads between half halvings were trimmed, not searched. {on}."
         ),
         true => format!(
-            "Exhaustive search over half halvings and purchasable grades: no plan of theirs that costs less than {:.2} \
-             does. {on}.",
+            "Exhaustive search: no plan of half halvings and purchasable grades costs less than {:.2} and reaches the \
+             aim; spreads between half halvings were trimmed, not searched. {on}.",
             proof.none_below
         ),
         false => format!(

@@ -2,5 +2,6 @@
 
 mod figures;
 mod html;
+mod measures;
 mod numbers;
 mod sample;
