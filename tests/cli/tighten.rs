@@ -149,7 +149,7 @@ fn property_bad_arguments_are_refused_with_what_would_do() {
         (&["--target", "none"], "tighten.target"),
         (&["--move", "fluid.nominal_viscosity"], "PATH=LEAST..MOST"),
         (&["--move", "fluid.nominal_viscosity=1 cSt"], "PATH=LEAST..MOST"),
-        (&["--move", "fluid.viscosity=1 cSt..2 cSt"], "fluid.nominal_viscosity"),
+        (&["--move", "fluid.viscosity=1 cSt..2 cSt"], "unknown design key `fluid.viscosity`"),
         (&["--move", "fluid.nominal_viscosity=140000..90000 cSt"], "is empty"),
         (&["--move", "brake.rotors=5..9"], "brake.rotors cannot move"),
         (&["--move", "none", "--move", "brake.gap=0.06 in..0.07 in"], "nothing beside it"),

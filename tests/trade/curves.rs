@@ -125,7 +125,7 @@ fn property_a_replicated_design_has_a_trade_too() {
 #[test]
 fn property_the_size_of_a_trade_does_not_follow_where_an_adaptive_run_stopped() {
     let until = "sampling.until={relative_error=0.2, budget=20000}";
-    let adaptive = study(&[until, "trade.samples=4000"]);
+    let adaptive = study(&[until, "trade.samples=8000"]);
     let progress = Progress::default();
     let mut looks = campaign::Looks::new(&adaptive).expect("looks");
     let mut record = Record::new(&adaptive, 1).expect("a record");
@@ -135,15 +135,15 @@ fn property_the_size_of_a_trade_does_not_follow_where_an_adaptive_run_stopped() 
     };
     campaign::run_until(&adaptive, &mut looks, &progress, &mut sink).expect("a run");
     let stopped = record.counts().samples();
-    assert!(stopped < 4000, "stopped at {stopped}: it does not stop below the trade's sample");
+    assert!(stopped < 8000, "stopped at {stopped}: it does not stop below the trade's sample");
     let trade = run_trade(&adaptive, &record, &progress).expect("a trade").expect("a trade");
     assert_eq!(
         (trade.base.rows(), trade.headline_base.rows(), trade.score_samples),
-        (4000, 4000, 4000)
+        (8000, 8000, 8000)
     );
     // The same points as those of a run of fixed size.
-    let fixed = study(&["sampling.samples=4000", "trade.samples=4000"]);
-    let whole = CommonSample::of_run(&fixed, 4000).expect("a sample");
+    let fixed = study(&["sampling.samples=8000", "trade.samples=8000"]);
+    let whole = CommonSample::of_run(&fixed, 8000).expect("a sample");
     assert_eq!(trade.base, whole.base(&progress).expect("breaches"));
 }
 
