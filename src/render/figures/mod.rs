@@ -22,6 +22,7 @@ mod distribution;
 mod drivers;
 mod fan;
 mod go;
+mod go_map;
 mod interaction;
 mod paper;
 mod svg;
@@ -101,7 +102,13 @@ pub fn figures(findings: &Findings) -> ReportFigures {
             .chain(data.interaction.as_ref().ok().and_then(interaction::figure))
             .collect(),
         trade: trade::figure(findings).into_iter().collect(),
-        known: findings.known.charts.iter().filter_map(go::figure).collect(),
+        known: findings
+            .known
+            .charts
+            .iter()
+            .filter_map(go::figure)
+            .chain(findings.known.map.iter().filter_map(go_map::figure))
+            .collect(),
         descents: fan::figures(findings),
     }
 }

@@ -50,6 +50,9 @@ pub(super) fn figure(findings: &Findings) -> Option<Figure> {
         (low, points().map(read).fold(f64::NEG_INFINITY, f64::max))
     };
     let ((left, right), (lowest, highest)) = (ends(|p| p.0), ends(|p| p.1));
+    let bands = || curves.iter().flat_map(|(curve, _)| band(curve));
+    let lowest = bands().map(|(_, low, _)| low).fold(lowest, f64::min).max(0.0);
+    let highest = bands().map(|(_, _, high)| high).fold(highest, f64::max);
     // What is allowed belongs to the picture if the curves come anywhere near it.
     let near = allowed.filter(|a| *a > lowest - 3.0 * (highest - lowest));
     let low = near.map_or(lowest, |a| a.min(lowest));
