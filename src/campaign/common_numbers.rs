@@ -4,13 +4,12 @@
 //! change matters and nowhere else, and the difference of their breach probabilities has a far smaller
 //! error than either.
 
+pub use super::breaches::{Breaches, Event};
 use super::{Ensemble, Progress, in_parallel, sampler};
 use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
 use crate::outcomes::OutcomeTable;
 use crate::physics::Target;
-use crate::reliability::paired::PairedCounts;
-use crate::reliability::probability::Proportion;
 use crate::sampling::{Design, Sampler};
 use crate::sensitivity::conditional_normal::Conditioning;
 use crate::streams::Purpose;
@@ -72,111 +71,6 @@ impl Change {
     pub fn and_design(mut self, target: Target, value: f64) -> Self {
         self.design.push((target, value));
         self
-    }
-}
-
-/// The event whose probability is asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Event {
-    /// Any limit is breached.
-    Any,
-    /// This limit is.
-    Limit(usize),
-}
-
-/// Which limits each row breaches.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Breaches {
-    breached: Vec<u32>,
-    unknown: Vec<u32>,
-}
-
-impl Breaches {
-    /// The breaches of a table's rows.
-    pub fn of(study: &Study, table: &OutcomeTable) -> Self {
-        let margin = |i: usize, k: usize| {
-            let limit = &study.limits[i];
-            limit.margin_of(table.outcomes.get(k, limit.outcome as usize))
-        };
-        Self::from_margins(study.limits.len(), table.rows(), margin)
-    }
-
-    /// The breaches of rows by the margin of limit `i` in row `k`; NaN where it is not known.
-    pub fn from_margins(limits: usize, rows: usize, margin: impl Fn(usize, usize) -> f64) -> Self {
-        let bits = |holds: &dyn Fn(f64) -> bool| {
-            let row = |k| (0..limits).fold(0, |bits, i| bits | u32::from(holds(margin(i, k))) << i);
-            (0..rows).map(row).collect()
-        };
-        Breaches { breached: bits(&|m| m < 0.0), unknown: bits(&f64::is_nan) }
-    }
-
-    /// Number of rows.
-    pub fn rows(&self) -> usize {
-        self.breached.len()
-    }
-
-    /// Some of the rows, in their order.
-    pub fn part(&self, rows: Range<usize>) -> Self {
-        Breaches {
-            breached: self.breached[rows.clone()].to_vec(),
-            unknown: self.unknown[rows].to_vec(),
-        }
-    }
-
-    /// Whether the event happened in row `k`; `None` where that is not known.
-    pub fn happened(&self, event: Event, k: usize) -> Option<bool> {
-        let mask = match event {
-            Event::Any => u32::MAX,
-            Event::Limit(i) => 1 << i,
-        };
-        match (self.breached[k] & mask != 0, self.unknown[k] & mask != 0) {
-            (true, _) => Some(true),
-            (false, true) => None,
-            (false, false) => Some(false),
-        }
-    }
-
-    /// The event in each row as a number: 1, 0, or NaN where it is not known.
-    pub fn indicator(&self, event: Event) -> Vec<f64> {
-        let number = |k| self.happened(event, k).map_or(f64::NAN, |yes| f64::from(u8::from(yes)));
-        (0..self.rows()).map(number).collect()
-    }
-
-    /// The event counted over some rows.
-    pub fn counts(&self, event: Event, rows: impl Iterator<Item = usize>) -> Proportion {
-        let mut counts = Proportion { breaches: 0, faults: 0, samples: 0 };
-        for k in rows {
-            let happened = self.happened(event, k);
-            counts.samples += 1;
-            counts.breaches += u64::from(happened == Some(true));
-            counts.faults += u64::from(happened.is_none());
-        }
-        counts
-    }
-
-    /// The event counted over all rows.
-    pub fn count(&self, event: Event) -> Proportion {
-        self.counts(event, 0..self.rows())
-    }
-
-    /// Share of rows with a breach, a row that is not known taken as one: what a search goes by.
-    pub fn worst_share(&self) -> f64 {
-        let counts = self.count(Event::Any);
-        (counts.most_breaches()) as f64 / counts.samples.max(1) as f64
-    }
-
-    /// How this variant differs from `base`, row by row.
-    pub fn against(
-        &self,
-        base: &Breaches,
-        event: Event,
-        rows: impl Iterator<Item = usize>,
-    ) -> PairedCounts {
-        let mut counts = PairedCounts::default();
-        for k in rows {
-            counts.push(base.happened(event, k), self.happened(event, k));
-        }
-        counts
     }
 }
 
@@ -259,12 +153,22 @@ impl<'a> CommonSample<'a> {
         };
         let inputs = Columns::new(points.rows(), points.columns());
         let mut sample = CommonSample { study, replicates, points, inputs };
-        let columns: Vec<usize> = (0..study.inputs.len()).collect();
+        let columns: Vec<usize> = (0..study.inputs.len()).filter(|&j| sample.is_alone(j)).collect();
         let values = in_parallel(&columns, |&j| sample.column(&study.inputs[j].marginal, j));
-        for (j, column) in values.iter().enumerate() {
+        for (&j, column) in columns.iter().zip(&values) {
             sample.inputs.column_mut(j).copy_from_slice(column);
         }
+        sample.fill_drawn_together();
         sample
+    }
+
+    /// Writes the inputs that are drawn together with others.
+    fn fill_drawn_together(&mut self) {
+        let CommonSample { study, points, inputs, .. } = self;
+        match study.joint.copula() {
+            None => study.joint.fill_from_uniform(points, inputs),
+            Some(_) => study.joint.fill_from_standard_normal(points, inputs),
+        }
     }
 
     /// The study.
@@ -309,6 +213,13 @@ impl<'a> CommonSample<'a> {
 
     /// The normal scores Φ⁻¹(F(x)) of an input.
     pub fn normal_scores(&self, j: usize) -> Vec<f64> {
+        if !self.is_alone(j) {
+            // A value drawn from a table: the middle of its step, which is never 0 nor 1.
+            let law = &self.study.inputs[j].marginal;
+            let middle = |&x: &f64| 0.5 * (law.cdf(x.next_down()) + law.cdf(x));
+            let scores = self.inputs.column(j).iter().map(middle);
+            return scores.map(crate::numerics::special::normal::quantile).collect();
+        }
         let mut scores = self.points.column(j).to_vec();
         if self.study.joint.copula().is_none() {
             crate::numerics::special::normal::quantile_column(self.points.column(j), &mut scores);
@@ -316,8 +227,21 @@ impl<'a> CommonSample<'a> {
         scores
     }
 
+    /// Input `j` under the law `marginal`. One that is drawn together with others keeps the rank that its row
+    /// has among the rows: what depends on what stays, and the law alone changes.
     fn column(&self, marginal: &Marginal, j: usize) -> Vec<f64> {
         let mut values = vec![0.0; self.rows()];
+        if self.study.joint.sample_of(j).is_some() {
+            let own = &self.study.inputs[j].marginal;
+            for (value, &x) in values.iter_mut().zip(self.inputs.column(j)) {
+                let (below, above) = (own.cdf(x), own.survival(x));
+                *value = match below <= above {
+                    true => marginal.quantile_lower(below),
+                    false => marginal.quantile_upper(above),
+                };
+            }
+            return values;
+        }
         match self.study.joint.copula() {
             None => marginal.quantile_column(self.points.column(j), &mut values),
             Some(_) => marginal.from_standard_normal_column(self.points.column(j), &mut values),
@@ -338,6 +262,14 @@ impl<'a> CommonSample<'a> {
     /// # Errors
     /// If a design value does not fit an input's law.
     pub fn changed(&self, change: &Change, progress: &Progress) -> Result<Breaches> {
+        Ok(Breaches::of(self.study, &self.table(change, progress)?))
+    }
+
+    /// What becomes of a variant of the study at these points.
+    ///
+    /// # Errors
+    /// As [`Self::changed`].
+    pub fn table(&self, change: &Change, progress: &Progress) -> Result<OutcomeTable> {
         let mut study = self.study.clone();
         let mut inputs = self.inputs.clone();
         let mut marginals = change.marginals.clone();
@@ -349,7 +281,7 @@ impl<'a> CommonSample<'a> {
                 if whole || input.target == target {
                     let changed = marginals.iter().position(|(k, _)| *k == j);
                     let law = changed.map_or(&input.marginal, |at| &marginals[at].1);
-                    let moved = law.with_shifted_mean(value - law.law().mean())?;
+                    let moved = law.with_shifted_mean(value - law.law().anchor())?;
                     marginals.retain(|(k, _)| *k != j);
                     marginals.push((j, moved));
                 }
@@ -361,8 +293,7 @@ impl<'a> CommonSample<'a> {
         if !change.known.is_empty() {
             self.condition(&change.known, &marginals, &mut inputs)?;
         }
-        let table = Ensemble::new(&study).at_inputs(&inputs, progress);
-        Ok(Breaches::of(&study, &table))
+        Ok(Ensemble::new(&study).at_inputs(&inputs, progress))
     }
 
     /// Gives every row the known values, and the inputs that depend on them their laws given those.
@@ -388,7 +319,7 @@ impl<'a> CommonSample<'a> {
             for k in 0..points.rows() {
                 conditioning.apply(&mut points, k, &targets);
             }
-            for j in 0..points.columns() {
+            for j in (0..points.columns()).filter(|&j| self.is_alone(j)) {
                 law(j).from_standard_normal_column(points.column(j), inputs.column_mut(j));
             }
         }
@@ -398,6 +329,11 @@ impl<'a> CommonSample<'a> {
         Ok(())
     }
 
+    /// Whether input `j` is not drawn together with others.
+    fn is_alone(&self, j: usize) -> bool {
+        self.study.joint.sample_of(j).is_none()
+    }
+
     fn rows_of_correlation(&self, copula: &crate::uncertainty::Copula) -> Vec<Vec<f64>> {
         let n = copula.dimension();
         let row = |i| (0..n).map(|j| copula.normal_correlation(i, j)).collect();
@@ -405,16 +341,23 @@ impl<'a> CommonSample<'a> {
     }
 
     /// Draws in which row `k` keeps the inputs `given` of row `of(k)` of this sample and takes the others
-    /// from `others`' row `k`, by their laws given those.
+    /// from `others`' row `k`, by their laws given those. Inputs that are drawn together are given together.
     ///
     /// # Errors
-    /// If the copula cannot be conditioned so.
+    /// If the copula cannot be conditioned so, or some of the inputs drawn together are given and others not.
     pub fn mixed(
         &self,
         given: &[usize],
         of: impl Fn(usize) -> usize,
         others: &CommonSample<'_>,
     ) -> Result<Columns> {
+        for sample in self.study.joint.samples() {
+            let count = sample.inputs().iter().filter(|j| given.contains(j)).count();
+            if count != 0 && count != sample.inputs().len() {
+                let reason = "inputs that are drawn together cannot be given apart";
+                return Err(Error::argument(reason));
+            }
+        }
         let mut inputs = others.inputs.clone();
         if let Some(copula) = self.study.joint.copula() {
             let conditioning = Conditioning::new(self.rows_of_correlation(copula), given)?;
@@ -423,7 +366,7 @@ impl<'a> CommonSample<'a> {
                 let targets: Vec<f64> = given.iter().map(|&j| self.points.get(of(k), j)).collect();
                 conditioning.apply(&mut points, k, &targets);
             }
-            for j in 0..points.columns() {
+            for j in (0..points.columns()).filter(|&j| self.is_alone(j)) {
                 let marginal = &self.study.inputs[j].marginal;
                 marginal.from_standard_normal_column(points.column(j), inputs.column_mut(j));
             }

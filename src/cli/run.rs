@@ -121,7 +121,7 @@ impl Run<'_> {
         })?;
         self.write(&findings)?;
         let times = (begun.elapsed().as_secs_f64(), sampled.as_secs_f64());
-        self.write_provenance(times, computed, samples - computed)?;
+        self.write_provenance(times, progress.done(), (computed, samples - computed))?;
         self.report(&findings)
     }
 
@@ -246,8 +246,8 @@ impl Run<'_> {
     }
 
     /// What may differ between two runs of the same study: kept out of everything else.
-    fn write_provenance(&self, times: (f64, f64), computed: u64, read: u64) -> Result<()> {
-        let (seconds, sampling) = times;
+    fn write_provenance(&self, times: (f64, f64), descents: u64, rows: (u64, u64)) -> Result<()> {
+        let ((seconds, sampling), (computed, read)) = (times, rows);
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |t| t.as_secs());
         let provenance = serde_json::json!({
             "version": env!("CARGO_PKG_VERSION"),
@@ -259,6 +259,7 @@ impl Run<'_> {
             "threads": self.arguments.threads.map_or_else(campaign::threads, usize::from),
             "wall_time_s": seconds,
             "sampling_time_s": sampling,
+            "descents_computed": descents,
             "samples_computed": computed,
             "samples_read_again": read,
             "study_digest": self.study.digest(),

@@ -1,6 +1,8 @@
 //! Everything a report says, computed once, as one tree that serialises: what the Markdown shows, the
 //! JSON holds. Numbers are SI; the renderer chooses units.
 
+pub mod compare;
+mod compare_studies;
 mod demonstration;
 pub mod derivatives;
 pub mod design_value;
@@ -15,6 +17,7 @@ mod probabilities;
 mod rare;
 mod sequence;
 pub mod shapley;
+pub mod sweep;
 pub mod tighten;
 pub mod trade;
 

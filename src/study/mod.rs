@@ -14,6 +14,8 @@ mod inputs;
 mod law;
 mod laws;
 mod load;
+pub mod measured_run;
+mod over;
 mod overrides;
 mod pairs;
 mod place;
@@ -22,19 +24,23 @@ mod resolved;
 pub mod schema;
 mod sections;
 mod tighten;
+mod together;
 mod until;
 mod vocabulary;
 
 use crate::descent::{Model, Outcome, OutcomeQuantity};
 use crate::physics::design::{Design, Target};
 use crate::sampling;
-use crate::uncertainty::{Joint, Marginal, Measure};
+use crate::uncertainty::{Joint, Marginal, Measure, Readings};
 
 pub use assemble::{Files, NamedText, assemble};
-pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, ParquetColumn, read_column};
+pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, Parquet, read_column, read_sample};
+pub use measured_run::MeasuredRun;
+pub use over::{MOST_CELLS, Over, design_path, option_error};
 pub use overrides::Override;
 pub use resolved::{ResolvedParameter, UncertainLaw};
 pub use tighten::{DesignRange, Grade, TightenPlan, TighteningCost, TradePlan};
+pub use together::{SampleColumn, SampleFile};
 pub use until::StoppingPlan;
 
 /// A study, resolved: every value in SI, every name known.
@@ -53,6 +59,8 @@ pub struct Study {
     pub joint: Joint,
     /// The statements that the joint distribution's dependence was made from.
     pub correlations: Vec<Correlation>,
+    /// The files from whose rows several inputs are drawn together.
+    pub drawn_together: Vec<DrawnTogether>,
     /// What a descent must not breach, in the order of [`OutcomeQuantity`], upper limit first.
     pub limits: Vec<Limit>,
     /// What the verdict is held against.
@@ -90,6 +98,8 @@ pub struct Input {
     pub target: Target,
     /// Its distribution, SI.
     pub marginal: Marginal,
+    /// The readings that the distribution predicts from, if it is made of some.
+    pub readings: Option<Readings>,
     /// When its value becomes known.
     pub known: Known,
     /// Where the distribution comes from.
@@ -143,6 +153,21 @@ pub struct Correlation {
     pub measure: Measure,
     /// Where it comes from.
     pub source: String,
+}
+
+/// Inputs that are drawn together from the rows of a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DrawnTogether {
+    /// What the sample is called as one factor.
+    pub name: String,
+    /// The file as the card names it.
+    pub file: String,
+    /// SHA-256 of the file, in hexadecimal.
+    pub sha256: String,
+    /// Number of rows, each equally likely.
+    pub rows: usize,
+    /// Places of the inputs in [`Study::inputs`], ascending.
+    pub inputs: Vec<usize>,
 }
 
 /// Which side of a limit is allowed.

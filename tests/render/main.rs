@@ -5,3 +5,4 @@ mod html;
 mod measures;
 mod numbers;
 mod sample;
+mod sweep;

@@ -17,6 +17,7 @@
 
 mod axis;
 mod chart;
+mod contour;
 mod convergence;
 mod distribution;
 mod drivers;
@@ -26,11 +27,14 @@ mod go_map;
 mod interaction;
 mod paper;
 mod svg;
+mod sweep;
+mod sweep_map;
 mod trade;
 
 use crate::findings::Findings;
 
 pub use paper::paper_figures;
+pub use sweep::sweep_figures;
 
 /// One figure.
 #[derive(Debug, Clone, PartialEq)]
@@ -107,7 +111,7 @@ pub fn figures(findings: &Findings) -> ReportFigures {
             .charts
             .iter()
             .filter_map(go::figure)
-            .chain(findings.known.map.iter().filter_map(go_map::figure))
+            .chain(findings.known.map.as_ref().and_then(go_map::figure))
             .collect(),
         descents: fan::figures(findings),
     }
