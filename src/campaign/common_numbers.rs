@@ -298,6 +298,25 @@ impl<'a> CommonSample<'a> {
         &self.inputs
     }
 
+    /// Some of the points, as a sample of their own.
+    pub fn rows_of(&self, rows: &[u32]) -> CommonSample<'a> {
+        let gather = |from: &Columns| {
+            let mut columns = Columns::new(rows.len(), from.columns());
+            for j in 0..from.columns() {
+                let own = from.column(j);
+                let into = columns.column_mut(j).iter_mut();
+                into.zip(rows).for_each(|(value, &row)| *value = own[row as usize]);
+            }
+            columns
+        };
+        CommonSample {
+            study: self.study,
+            replicates: self.replicates,
+            points: gather(&self.points),
+            inputs: gather(&self.inputs),
+        }
+    }
+
     /// The normal scores Φ⁻¹(F(x)) of an input.
     pub fn normal_scores(&self, j: usize) -> Vec<f64> {
         let mut scores = self.points.column(j).to_vec();
@@ -356,7 +375,9 @@ impl<'a> CommonSample<'a> {
         for &(target, value) in &change.design {
             study.design.set(target, value);
             for (j, input) in self.study.inputs.iter().enumerate() {
-                if input.target == target {
+                // A whole gap is the mean of every surface's.
+                let whole = target.surface.is_none() && input.target.parameter == target.parameter;
+                if whole || input.target == target {
                     let changed = marginals.iter().position(|(k, _)| *k == j);
                     let law = changed.map_or(&input.marginal, |at| &marginals[at].1);
                     let moved = law.with_shifted_mean(value - law.law().anchor())?;

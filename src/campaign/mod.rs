@@ -13,6 +13,7 @@ mod looks;
 mod pick_freeze;
 mod rare;
 mod record;
+mod refutation;
 pub mod scores;
 pub mod screening;
 pub mod shapley;

@@ -176,6 +176,10 @@ pub(super) struct TightenArguments {
     /// Largest acceptable probability of any breach, in place of the study's: 0.01 or "1 %"
     #[arg(long, value_name = "P")]
     pub target: Option<String>,
+    /// Let a design value move at no cost, in place of the study's (fluid.nominal_viscosity="90000 cSt..140000 cSt");
+    /// may be given several times; "none" holds every one
+    #[arg(long = "move", value_name = "PATH=LEAST..MOST")]
+    pub moves: Vec<String>,
     /// Directory for tighten.json and tighten.md
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

@@ -7,6 +7,7 @@
 pub mod allocation;
 pub mod binomial_tails;
 pub mod breach_counts;
+pub mod cheaper_plans;
 pub mod demonstration;
 pub mod normal_tolerance;
 pub mod paired;

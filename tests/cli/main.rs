@@ -13,5 +13,6 @@ mod published;
 mod readers;
 mod replaying;
 mod sweeping;
+mod tighten;
 mod together;
 mod verdicts;

@@ -109,10 +109,16 @@ impl Chart {
         let wider = (text_width(&y.widest_decade()) - computed.y_tick_label_px).max(0.0);
         computed.y_tick_label_px += wider;
         computed.margin_left += wider;
+        if !y.label.is_empty() {
+            let beside = computed.y_tick_label_px + 16.0 + 1.5 * f64::from(LABEL_SIZE);
+            computed.margin_left = computed.margin_left.max(beside);
+        }
         let lines = key_rows(&keys, WIDTH - 16.0).len() as f64;
         let header = 6.0 + lines * ROW;
         computed.margin_top = header + if vertical_limits { ROW + 4.0 } else { 6.0 };
-        computed.margin_right = computed.margin_right.max(22.0);
+        // The last tick's label is centred on the axis's end.
+        computed.margin_right =
+            computed.margin_right.max(0.5 * text_width(&x.last_tick()) + 4.0).max(22.0);
         computed.recompute_transforms();
         let mut scene = Scene::new(WIDTH, height);
         scene.background_color = Some(CARD.to_owned());
