@@ -1,5 +1,6 @@
 //! The command line.
 
+use super::rig_arguments::RigArguments;
 use crate::error::Result;
 use crate::store::read_number_column;
 use crate::study::{Override, Study};
@@ -29,6 +30,8 @@ pub(super) enum Command {
     Descend(DescendArguments),
     /// Find the cheapest tightenings and design change that meet a target, and confirm them
     Tighten(TightenArguments),
+    /// The horizontal rig: one run, its modes compared as test options, or the best tests planned
+    Rig(Box<RigArguments>),
     /// Compute one sample of a run again, and compare it bit for bit
     Replay(ReplayArguments),
     /// Validate a study and show every resolved input with its unit and source

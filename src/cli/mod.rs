@@ -8,6 +8,8 @@ mod diagnostics;
 mod output;
 mod parentage;
 mod replay;
+mod rig;
+mod rig_arguments;
 mod run;
 mod tighten;
 mod trade_tables;
@@ -64,6 +66,7 @@ fn carry_out(arguments: Arguments) -> Result<Ending> {
         Some(Command::Run(run)) => run::run(&run),
         Some(Command::Descend(descend)) => descend::descend(&descend),
         Some(Command::Tighten(tighten)) => tighten::tighten(&tighten),
+        Some(Command::Rig(rig)) => rig::rig(&rig),
         Some(Command::Replay(replay)) => replay::replay(&replay),
         Some(Command::Check(check)) => check::check(&check),
         Some(Command::Schema { kind }) => describe::schema(kind),

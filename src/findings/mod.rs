@@ -12,6 +12,7 @@ mod margins;
 mod numerical;
 mod probabilities;
 mod rare;
+pub mod rig;
 mod sequence;
 pub mod shapley;
 pub mod tighten;

@@ -6,15 +6,17 @@ mod figures_of_speech;
 mod html;
 mod known_view;
 mod markdown;
+mod rig;
 mod tables;
 mod terminal;
 mod tighten;
 mod trade_view;
 mod view;
 
-pub use figures::{Figure, ReportFigures, figures, paper_figures};
+pub use figures::{Figure, ReportFigures, figures, paper_figures, rig_figures, rig_mode_figures};
 pub use html::html;
 pub use markdown::markdown;
+pub use rig::{rig_comparison_terminal, rig_plan_terminal};
 pub use tables::table;
 pub use terminal::{Style, terminal};
 pub use tighten::{tighten_markdown, tighten_terminal};

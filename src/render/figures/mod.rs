@@ -18,18 +18,21 @@
 mod axis;
 mod chart;
 mod convergence;
+mod curves;
 mod distribution;
 mod drivers;
 mod fan;
 mod go;
 mod interaction;
 mod paper;
+mod rig;
 mod svg;
 mod trade;
 
 use crate::findings::Findings;
 
 pub use paper::paper_figures;
+pub use rig::{rig_figures, rig_mode_figures};
 
 /// One figure.
 #[derive(Debug, Clone, PartialEq)]
