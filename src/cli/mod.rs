@@ -6,6 +6,7 @@ mod descend;
 mod describe;
 mod diagnostics;
 mod output;
+mod paper;
 mod parentage;
 mod replay;
 mod rig;
@@ -66,6 +67,7 @@ fn carry_out(arguments: Arguments) -> Result<Ending> {
         Some(Command::Run(run)) => run::run(&run),
         Some(Command::Descend(descend)) => descend::descend(&descend),
         Some(Command::Tighten(tighten)) => tighten::tighten(&tighten),
+        Some(Command::Paper(paper)) => paper::paper(&paper),
         Some(Command::Rig(rig)) => rig::rig(&rig),
         Some(Command::Replay(replay)) => replay::replay(&replay),
         Some(Command::Check(check)) => check::check(&check),

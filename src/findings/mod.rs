@@ -10,6 +10,7 @@ mod inputs;
 pub mod known;
 mod margins;
 mod numerical;
+pub mod paper;
 mod probabilities;
 mod rare;
 pub mod rig;

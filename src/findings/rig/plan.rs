@@ -154,7 +154,10 @@ pub fn top_level(
 }
 
 /// The candidates of one mode and start with their information, or why there are none.
-type Attempt = std::result::Result<Vec<(Candidate, DMatrix<f64>)>, String>;
+type Attempt = std::result::Result<Vec<Informed>, String>;
+
+/// A candidate with its Fisher information.
+type Informed = (Candidate, DMatrix<f64>);
 
 /// The candidates: three modes, each at the flight's mean (or what proof load and fluid allow) and gentler, from
 /// each starting temperature.
@@ -162,7 +165,7 @@ fn candidates(
     study: &Study,
     parameters: &Parameters,
     options: &PlanOptions,
-) -> Result<(Vec<(Candidate, DMatrix<f64>)>, Vec<String>)> {
+) -> Result<(Vec<Informed>, Vec<String>)> {
     let means = flight_means(&parameters.median)?;
     let mut wanted = Vec::new();
     for &start_k in &options.starts_k {

@@ -25,7 +25,7 @@ const WARM_UP: f64 = 0.1;
 pub struct RigRun {
     /// Its moments.
     pub samples: Vec<Sample>,
-    /// What it ended in; peaks of a recorded run are over the record's times.
+    /// What it ended in; peaks of a recorded run are over the record's times and the end of the line.
     pub outcome: Outcome,
     /// How far it is from what was measured, for a recorded run.
     pub residuals: Vec<Residual>,
@@ -127,14 +127,39 @@ pub fn recorded(design: &Design, measured: &MeasuredRun, drive: Drive) -> Result
         return Err(cannot_compute(fault));
     }
     let readings = prediction.readings_on_the_line(&record, |value| value);
+    let last = last_on_the_line(&prediction, record.times_s(), readings.len());
     let samples: Vec<Sample> = readings
         .iter()
-        .zip(record.times_s())
-        .map(|(reading, &time_s)| sample(&coefficients, reading, time_s))
+        .copied()
+        .zip(record.times_s().iter().copied())
+        .chain(last)
+        .map(|(reading, time_s)| sample(&coefficients, &reading, time_s))
         .collect();
     let outcome = outcome(&samples, &prediction, record.times_s());
     let residuals = residuals(measured, readings, drive);
     Ok(RigRun { samples, outcome, residuals })
+}
+
+/// The reading at the moment the line runs out, between the readings about it; none if it lasts.
+fn last_on_the_line(
+    prediction: &Prediction,
+    times: &[f64],
+    seen: usize,
+) -> Option<(Reading<f64>, f64)> {
+    let end = prediction.line_out_s?;
+    let k = seen.checked_sub(1)?;
+    let (before, after) = (prediction.readings.get(k)?, prediction.readings.get(seen)?);
+    let (from, to) = (*times.get(k)?, *times.get(seen)?);
+    let share = (end - from) / (to - from);
+    let between = |a: f64, b: f64| share.mul_add(b - a, a);
+    let node = |n: usize| between(before.temperatures_k[n], after.temperatures_k[n]);
+    let reading = Reading {
+        line_m: between(before.line_m, after.line_m),
+        force_n: between(before.force_n, after.force_n),
+        speed_m_per_s: between(before.speed_m_per_s, after.speed_m_per_s),
+        temperatures_k: [node(0), node(1), node(2)],
+    };
+    (share > 0.0).then_some((reading, end))
 }
 
 fn sample(c: &Coefficients<f64>, reading: &Reading<f64>, time_s: f64) -> Sample {

@@ -46,10 +46,10 @@ pub(super) fn figure(panel: Panel<'_>, curves: &[Curve], ordered: bool) -> Optio
     };
     let ((left, right), (lowest, highest)) = (ends(|p| p.0), ends(|p| p.1));
     // A limit belongs to the picture if the curves come near it.
-    let near = |value: f64| value < highest + 0.6 * (highest - lowest) && value > 0.5 * lowest;
+    let bottom = if panel.from_zero { lowest.min(0.0) } else { lowest };
+    let near = |value: f64| value < highest + 0.6 * (highest - bottom) && value > bottom;
     let limit = panel.limit.filter(|(value, _)| near(*value));
     let highest = limit.as_ref().map_or(highest, |(value, _)| value.max(highest));
-    let bottom = if panel.from_zero { lowest.min(0.0) } else { lowest };
     let room = 0.06 * (highest - bottom);
     let keys = curves
         .iter()

@@ -31,7 +31,7 @@ mod trade;
 
 use crate::findings::Findings;
 
-pub use paper::paper_figures;
+pub use paper::{paper_figures, starting_temperature_figure};
 pub use rig::{rig_figures, rig_mode_figures};
 
 /// One figure.

@@ -11,6 +11,9 @@ use crate::units::{Quantity, display, number};
 /// Abscissa of every figure of a run in time.
 const TIME: &str = "time since the pull began (s)";
 
+/// How a value is read off a moment, SI.
+type Read = fn(&Sample) -> f64;
+
 fn shown(samples: &[Sample], quantity: Quantity, read: fn(&Sample) -> f64) -> Vec<(f64, f64)> {
     let unit = display(quantity);
     let begin = samples.first().map_or(0.0, |s| s.time_s);
@@ -41,7 +44,7 @@ pub fn rig_figures(
     let one = |name: &str, points| Curve { name: name.to_owned(), points, dots: false };
     let course = |name, title: &str, quantity, read: fn(&Sample) -> f64, column, limit| {
         let points = shown(&run.samples, quantity, read);
-        let named = record.is_some().then_some("predicted").unwrap_or_default();
+        let named = if record.is_some() { "predicted" } else { "" };
         let seen = record.and_then(|record: &MeasuredRun| measured(record, column, quantity));
         let (top, at) = run.peak(read);
         let begin = run.samples.first().map_or(0.0, |s| s.time_s);
@@ -95,7 +98,7 @@ fn temperatures(
     hottest_k: Option<f64>,
 ) -> Option<Figure> {
     let quantity = Quantity::Temperature;
-    let reads: [(&str, fn(&Sample) -> f64); 3] = [
+    let reads: [(&str, Read); 3] = [
         ("fluid", |s| s.temperatures_k[0]),
         ("rotors", |s| s.temperatures_k[1]),
         ("housing", |s| s.temperatures_k[2]),
