@@ -44,6 +44,8 @@ pub enum Purpose {
     Shapley,
     /// Trajectories of a screening.
     Screening,
+    /// Brakes and states of knowledge behind a plan of tests.
+    Planning,
     /// Tests and benchmarks.
     Test,
 }
@@ -67,6 +69,7 @@ impl Purpose {
             Purpose::Known => b"knownval",
             Purpose::Shapley => b"shapley ",
             Purpose::Screening => b"screenng",
+            Purpose::Planning => b"planning",
             Purpose::Test => b"test    ",
         }
     }

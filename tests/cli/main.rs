@@ -12,6 +12,7 @@ mod program;
 mod published;
 mod readers;
 mod replaying;
+mod rig;
 mod sweeping;
 mod tighten;
 mod together;

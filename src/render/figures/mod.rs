@@ -19,6 +19,7 @@ mod axis;
 mod chart;
 mod contour;
 mod convergence;
+mod curves;
 mod distribution;
 mod drivers;
 mod fan;
@@ -27,6 +28,7 @@ mod go_map;
 mod interaction;
 mod key;
 mod paper;
+mod rig;
 mod svg;
 mod sweep;
 mod sweep_map;
@@ -34,7 +36,8 @@ mod trade;
 
 use crate::findings::Findings;
 
-pub use paper::paper_figures;
+pub use paper::{paper_figures, starting_temperature_figure};
+pub use rig::{rig_figures, rig_mode_figures};
 pub use sweep::sweep_figures;
 
 /// One figure.
