@@ -3,7 +3,9 @@
 use crate::error::{Error, Result};
 use crate::sampling::Design;
 use crate::store::{PARQUET, Parentage};
-use crate::study::{Files, NamedText, Override, SampleFile, Study, assemble};
+use crate::study::{
+    EpistemicPlan, Files, NamedText, Nature, Override, SampleFile, Study, assemble,
+};
 use std::collections::{BTreeMap, VecDeque};
 use std::path::Path;
 
@@ -44,7 +46,7 @@ pub(super) fn of(study: &Study) -> Parentage {
 }
 
 /// The digest of everything that fixes a row of the table: the resolved study without its requirement,
-/// its stopping rule, its sensitivity, reliability and trade plans and, for a design whose longer run begins with the shorter, its
+/// its stopping rule, its sensitivity, reliability, trade and epistemic plans, what is unknown, and, for a design whose longer run begins with the shorter, its
 /// number of samples.
 pub(super) fn row_digest(study: &Study) -> String {
     let mut rows = study.clone();
@@ -56,8 +58,10 @@ pub(super) fn row_digest(study: &Study) -> String {
     rows.tighten.target = None;
     rows.tighten.samples = 0;
     rows.tighten.design.clear();
+    rows.epistemic = EpistemicPlan { outer: 0, inner: 0 };
     for input in &mut rows.inputs {
         input.cost = Default::default();
+        input.nature = Nature::Unknown;
     }
     rows.sampling.stopping = None;
     if rows.sampling.design != Design::LatinHypercube {

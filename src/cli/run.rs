@@ -91,15 +91,17 @@ impl Run<'_> {
         if progress.stopping() {
             return Ok(self.interrupted(samples, true));
         }
-        let (shapley, trade, known) = {
+        let (shapley, trade, known, epistemic) = {
             let descents = campaign::shapley::shapley_descents(self.study)
                 + campaign::trade::trade_descents(self.study)
-                + campaign::known::known_descents(self.study);
+                + campaign::known::known_descents(self.study)
+                + campaign::epistemic::epistemic_descents(self.study);
             let _watch = Watch::start(&progress, descents, "trade of tolerances");
             (
                 campaign::shapley::run_shapley(self.study, &progress),
                 campaign::trade::run_trade(self.study, &record, &progress),
                 campaign::known::run_known(self.study, samples, &progress),
+                campaign::epistemic::run_epistemic(self.study, &progress),
             )
         };
         if progress.stopping() {
@@ -116,6 +118,7 @@ impl Run<'_> {
             shapley: or_reason(shapley, "the study asks for none (sensitivity.base_samples = 0)"),
             trade: or_reason(trade, NO_TRADE),
             known: or_reason(known, NO_TRADE),
+            epistemic: or_reason(epistemic, NO_EPISTEMIC),
             command: self.command(),
         })?;
         self.write(&findings)?;
@@ -310,6 +313,9 @@ impl Rows {
 
 /// Why there is no trade of tolerances where a study has none.
 const NO_TRADE: &str = "the study asks for none (trade.samples = 0) or states no limit";
+
+/// Why what is not known is not told apart where a study asks for none.
+const NO_EPISTEMIC: &str = "the study asks for none (epistemic.outer = 0) or states no limit";
 
 /// What was computed, or why it was not.
 fn or_reason<T>(found: Result<Option<T>>, none: &str) -> std::result::Result<T, String> {

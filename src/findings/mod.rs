@@ -5,6 +5,7 @@ mod demonstration;
 pub mod derivatives;
 pub mod design_value;
 mod drivers;
+pub mod epistemic;
 mod figures;
 mod inputs;
 pub mod known;
@@ -17,6 +18,7 @@ pub mod shapley;
 pub mod tighten;
 pub mod trade;
 
+use crate::campaign::epistemic::EpistemicOutcomes;
 use crate::campaign::known::KnownOutcomes;
 use crate::campaign::shapley::ShapleyOutcomes;
 use crate::campaign::trade::TradeOutcomes;
@@ -30,6 +32,7 @@ use std::collections::BTreeMap;
 
 pub use demonstration::{Decision, VerdictFinding, VerdictWord};
 pub use drivers::{DriverOutput, DriversFinding, FactorFinding};
+pub use epistemic::{EpistemicEvent, EpistemicFinding, ProbabilityBox, UnknownShare};
 pub use figures::{
     Checkpoint, ConstantTemperature, Convergence, Distribution, Exceedance, Fan, FanBand,
     FigureData, Interaction, InteractionInput, PaperRuns, paper_runs,
@@ -78,6 +81,8 @@ pub struct Findings {
     pub trade: TradeFinding,
     /// What becomes known when, and what that settles.
     pub known: KnownFinding,
+    /// What varies from flight to flight, and what is not known.
+    pub epistemic: EpistemicFinding,
     /// Samples that did not deploy or could not be computed.
     pub exceptions: ExceptionFinding,
     /// What is uncertain.
@@ -192,6 +197,8 @@ pub struct Evidence<'a> {
     pub trade: std::result::Result<TradeOutcomes<'a>, String>,
     /// What becomes known when, or why that is not told.
     pub known: std::result::Result<KnownOutcomes, String>,
+    /// Its nested descents, or why there are none.
+    pub epistemic: std::result::Result<EpistemicOutcomes, String>,
     /// The command that was given, to be given again.
     pub command: String,
 }
@@ -223,6 +230,7 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
         breaches: shapley::breaches(study, &evidence.trade)?,
         trade: trade::trade(study, &evidence.trade)?,
         known: known::known(study, &evidence.known)?,
+        epistemic: epistemic::epistemic(study, &evidence.epistemic)?,
         exceptions: exceptions(record),
         inputs: inputs::inputs(study),
         numerical: numerical::numerical(study, record, &evidence.verification),

@@ -8,6 +8,7 @@ pub mod allocation;
 pub mod binomial_tails;
 pub mod breach_counts;
 pub mod demonstration;
+pub mod nested;
 pub mod normal_tolerance;
 pub mod paired;
 pub mod probability;

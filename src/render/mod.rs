@@ -1,6 +1,7 @@
 //! Findings as text and figures: a terminal summary, a Markdown and an HTML report, SVG. Returns strings; writes and prints nothing.
 
 mod driver_view;
+mod epistemic_view;
 mod figures;
 mod figures_of_speech;
 mod html;

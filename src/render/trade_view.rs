@@ -99,7 +99,7 @@ pub(super) fn quantity_of(path: &str) -> Quantity {
     parameter.map_or(Quantity::Number, |parameter| parameter.info().quantity)
 }
 
-fn name_of(path: &str, inputs: usize) -> String {
+pub(super) fn name_of(path: &str, inputs: usize) -> String {
     if inputs == 1 { format!("`{path}`") } else { format!("`{path}`, {inputs} as one") }
 }
 

@@ -1,6 +1,7 @@
 //! The findings in a reader's words and units: what every textual rendering is laid out from.
 
 use super::driver_view::{Drivers, drivers, ranked};
+use super::epistemic_view::{Epistemic, epistemic};
 use super::figures_of_speech::{
     bare, count, maybe, probability, probability_interval, upper_end, value, value_interval,
 };
@@ -32,6 +33,7 @@ pub(super) struct View {
     pub shares: Shares,
     pub trade: Trade,
     pub known: Known,
+    pub epistemic: Epistemic,
     pub nominal: String,
     pub outcomes: Vec<OutcomeRow>,
     pub exceptions: Vec<String>,
@@ -112,6 +114,7 @@ pub(super) struct InputRow {
     pub law: String,
     pub inputs: usize,
     pub known: &'static str,
+    pub nature: &'static str,
     pub source: String,
 }
 
@@ -159,6 +162,7 @@ pub(super) fn view(findings: &Findings) -> View {
         shares: shares(&findings.shapley),
         trade: trade(&findings.trade),
         known: known(&findings.known),
+        epistemic: epistemic(&findings.epistemic),
         nominal: nominal(findings),
         outcomes: findings.outcomes.iter().map(|o| outcome_row(findings, o)).collect(),
         exceptions: exceptions(findings),
@@ -171,6 +175,7 @@ pub(super) fn view(findings: &Findings) -> View {
                 law: input.law.clone(),
                 inputs: input.inputs,
                 known: input.known,
+                nature: input.nature,
                 source: input.source.clone(),
             })
             .collect(),

@@ -5,7 +5,9 @@ use super::document::{self, Node, Value};
 use super::overrides::{Destination, Override, in_place_of, put};
 use super::place::Text;
 use super::together::{self, SampleFile, Together};
-use super::{DrawnTogether, Input, Stated, Study, correlation, inputs, read, sections, tighten};
+use super::{
+    DrawnTogether, Input, Stated, Study, correlation, epistemic, inputs, read, sections, tighten,
+};
 use crate::descent::Model;
 use crate::error::{Error, Result};
 use crate::physics::design::{Design, Target};
@@ -90,6 +92,7 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
     let reliability = sections::reliability(find("reliability"))?;
     let trade = tighten::trade(find("trade"))?;
     let tighten = tighten::tighten(find("tighten"), &design)?;
+    let epistemic = epistemic::epistemic(find("epistemic"))?;
     if let (Some(node), true) = (find("requirement"), limits.is_empty()) {
         let expected = "expected at least one limit, such as [limits] time = { max = \"210 s\" }";
         return Err(node.place.error("a requirement without limits says nothing", expected));
@@ -116,6 +119,7 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
     let (joint, correlations) = correlation::joint(&inputs, samples, &card.correlations)?;
     let mut notes = notes(&design, &inputs, &stated);
     notes.extend(card.together.iter().filter_map(unused));
+    notes.extend(epistemic::shared_readings(&inputs));
     Ok(Study {
         title,
         model,
@@ -132,6 +136,7 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
         reliability,
         trade,
         tighten,
+        epistemic,
         stated,
         notes,
         origin: study.origin.clone(),

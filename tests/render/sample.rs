@@ -42,6 +42,9 @@ fn run(settings: &[&str]) -> Sample {
         pick_freeze,
         shapley: Err(unasked()),
         trade: Err(unasked()),
+        epistemic: campaign::epistemic::run_epistemic(&study, &progress)
+            .expect("nested descents")
+            .ok_or_else(|| "none".to_owned()),
         known: Err(unasked()),
         command: "reeldown run".to_owned(),
     })

@@ -26,6 +26,7 @@ mod interaction;
 mod paper;
 mod svg;
 mod trade;
+mod unknown;
 
 use crate::findings::Findings;
 
@@ -66,6 +67,8 @@ pub struct ReportFigures {
     pub trade: Vec<Figure>,
     /// Beside what becomes known when: go or no go.
     pub known: Vec<Figure>,
+    /// Beside what is not known: the belief about P, p-boxes.
+    pub epistemic: Vec<Figure>,
     /// Beside the descents: fans.
     pub descents: Vec<Figure>,
 }
@@ -79,6 +82,7 @@ impl ReportFigures {
             &self.drivers,
             &self.trade,
             &self.known,
+            &self.epistemic,
             &self.descents,
         ];
         sections.into_iter().flatten()
@@ -102,6 +106,7 @@ pub fn figures(findings: &Findings) -> ReportFigures {
             .collect(),
         trade: trade::figure(findings).into_iter().collect(),
         known: findings.known.charts.iter().filter_map(go::figure).collect(),
+        epistemic: unknown::figures(&findings.epistemic),
         descents: fan::figures(findings),
     }
 }
