@@ -4,6 +4,7 @@
 //! the work is cut into batches of fixed size at fixed places, and whatever is summed is summed in the
 //! order of the samples, so that nothing depends on the number of threads.
 
+pub mod calibrated;
 pub mod common_numbers;
 pub mod epistemic;
 mod evaluate;

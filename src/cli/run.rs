@@ -107,6 +107,10 @@ impl Run<'_> {
         if progress.stopping() {
             return Ok(self.interrupted(samples, true));
         }
+        let calibrated = campaign::calibrated::run_calibrated(self.study, &record, &progress)?;
+        if progress.stopping() {
+            return Ok(self.interrupted(samples, true));
+        }
         let findings = findings::gather(&Evidence {
             study: self.study,
             record: &record,
@@ -118,6 +122,7 @@ impl Run<'_> {
             shapley: or_reason(shapley, "the study asks for none (sensitivity.base_samples = 0)"),
             trade: or_reason(trade, NO_TRADE),
             known: or_reason(known, NO_TRADE),
+            calibrated,
             epistemic: or_reason(epistemic, NO_EPISTEMIC),
             command: self.command(),
         })?;

@@ -1,6 +1,7 @@
 //! Everything a report says, computed once, as one tree that serialises: what the Markdown shows, the
 //! JSON holds. Numbers are SI; the renderer chooses units.
 
+pub mod calibrated;
 mod demonstration;
 pub mod derivatives;
 pub mod design_value;
@@ -18,6 +19,7 @@ pub mod shapley;
 pub mod tighten;
 pub mod trade;
 
+use crate::campaign::calibrated::CalibratedOutcomes;
 use crate::campaign::epistemic::EpistemicOutcomes;
 use crate::campaign::known::KnownOutcomes;
 use crate::campaign::shapley::ShapleyOutcomes;
@@ -30,6 +32,7 @@ use crate::study::Study;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
+pub use calibrated::{CalibratedEvent, CalibratedFinding, MovedInput};
 pub use demonstration::{Decision, VerdictFinding, VerdictWord};
 pub use drivers::{DriverOutput, DriversFinding, FactorFinding};
 pub use epistemic::{EpistemicEvent, EpistemicFinding, ProbabilityBox, UnknownShare};
@@ -81,6 +84,8 @@ pub struct Findings {
     pub trade: TradeFinding,
     /// What becomes known when, and what that settles.
     pub known: KnownFinding,
+    /// What a calibration changed, if a card of the study is a calibrated one.
+    pub calibrated: Option<CalibratedFinding>,
     /// What varies from flight to flight, and what is not known.
     pub epistemic: EpistemicFinding,
     /// Samples that did not deploy or could not be computed.
@@ -197,6 +202,8 @@ pub struct Evidence<'a> {
     pub trade: std::result::Result<TradeOutcomes<'a>, String>,
     /// What becomes known when, or why that is not told.
     pub known: std::result::Result<KnownOutcomes, String>,
+    /// The study under the cards of the prior, if a card of it is a calibrated one.
+    pub calibrated: Option<CalibratedOutcomes>,
     /// Its nested descents, or why there are none.
     pub epistemic: std::result::Result<EpistemicOutcomes, String>,
     /// The command that was given, to be given again.
@@ -214,6 +221,7 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
     drawn.sampling.samples = record.counts().samples();
     let sampler = campaign::sampler(&drawn)?;
     let drivers = drivers::drivers(study, &evidence.pick_freeze)?;
+    let epistemic = epistemic::epistemic(study, &evidence.epistemic)?;
     Ok(Findings {
         format: 1,
         title: study.title.clone(),
@@ -230,7 +238,8 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
         breaches: shapley::breaches(study, &evidence.trade)?,
         trade: trade::trade(study, &evidence.trade)?,
         known: known::known(study, &evidence.known)?,
-        epistemic: epistemic::epistemic(study, &evidence.epistemic)?,
+        calibrated: calibrated::calibrated(study, evidence.calibrated.as_ref(), &epistemic)?,
+        epistemic,
         exceptions: exceptions(record),
         inputs: inputs::inputs(study),
         numerical: numerical::numerical(study, record, &evidence.verification),

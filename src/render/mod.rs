@@ -1,5 +1,6 @@
 //! Findings as text and figures: a terminal summary, a Markdown and an HTML report, SVG. Returns strings; writes and prints nothing.
 
+mod calibrated_view;
 mod driver_view;
 mod epistemic_view;
 mod figures;

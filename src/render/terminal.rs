@@ -79,6 +79,12 @@ pub fn terminal(findings: &Findings, style: Style) -> String {
             text += &format!("{}\n", wrapped(&line.replace('`', "")));
         }
     }
+    if let Some(calibrated) = &view.calibrated {
+        text.push('\n');
+        for line in &calibrated.headlines {
+            text += &format!("{}\n", wrapped(&line.replace('`', "")));
+        }
+    }
     if !view.epistemic.headlines.is_empty() {
         text.push('\n');
         for line in &view.epistemic.headlines {

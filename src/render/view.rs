@@ -1,5 +1,6 @@
 //! The findings in a reader's words and units: what every textual rendering is laid out from.
 
+use super::calibrated_view::{Calibrated, calibrated};
 use super::driver_view::{Drivers, drivers, ranked};
 use super::epistemic_view::{Epistemic, epistemic};
 use super::figures_of_speech::{
@@ -34,6 +35,7 @@ pub(super) struct View {
     pub trade: Trade,
     pub known: Known,
     pub epistemic: Epistemic,
+    pub calibrated: Option<Calibrated>,
     pub nominal: String,
     pub outcomes: Vec<OutcomeRow>,
     pub exceptions: Vec<String>,
@@ -163,6 +165,7 @@ pub(super) fn view(findings: &Findings) -> View {
         trade: trade(&findings.trade),
         known: known(&findings.known),
         epistemic: epistemic(&findings.epistemic),
+        calibrated: findings.calibrated.as_ref().map(calibrated),
         nominal: nominal(findings),
         outcomes: findings.outcomes.iter().map(|o| outcome_row(findings, o)).collect(),
         exceptions: exceptions(findings),

@@ -62,6 +62,16 @@ pub trait Files {
 /// # Errors
 /// A [`crate::error::Diagnostic`] for every mistake in a text.
 pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files) -> Result<Study> {
+    assemble_with(study, overrides, files, None)
+}
+
+/// As [`assemble`], with these cards in place of those that the study names.
+fn assemble_with(
+    study: &NamedText,
+    overrides: &[Override],
+    files: &mut dyn Files,
+    given: Option<&[NamedText]>,
+) -> Result<Study> {
     let text = Arc::new(Text { origin: study.origin.clone(), text: study.text.clone() });
     let mut document = document::parse(&text)?;
     let (design_overrides, card_overrides) = apply(overrides, &mut document)?;
@@ -99,7 +109,10 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
     }
     let card_node = find("card")
         .ok_or_else(|| missing("card", "card = \"…\": the file that says what is uncertain"))?;
-    let card_texts = card_texts(card_node, overrides, files)?;
+    let card_texts = match given {
+        Some(texts) => texts.to_vec(),
+        None => card_texts(card_node, overrides, files)?,
+    };
     let mut cards = Vec::new();
     for card in &card_texts {
         let text = Arc::new(Text { origin: card.origin.clone(), text: card.text.clone() });
@@ -107,6 +120,13 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
         card.together = together::read(&card, files)?;
         cards.push(card);
     }
+    let calibrated = cards.iter().skip(1).position(|card| card.calibrated_from.is_some());
+    let calibrated_from =
+        calibrated.and_then(|k| cards.get(k + 1)).and_then(|card| card.calibrated_from.clone());
+    let prior_cards = calibrated.and_then(|k| card_texts.get(..=k));
+    // What the cards before it say may not be a study of its own: there is then no prior to tell of.
+    let prior = prior_cards
+        .and_then(|cards| assemble_with(study, overrides, files, Some(cards)).ok().map(Box::new));
     let mut card = card::merge(cards);
     for (statement, path, key) in card_overrides {
         if let Some(target) = card::parameter_path(&path) {
@@ -136,6 +156,8 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
         reliability,
         trade,
         tighten,
+        calibrated_from,
+        prior,
         epistemic,
         stated,
         notes,

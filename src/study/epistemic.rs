@@ -76,7 +76,7 @@ pub(super) fn epistemic(node: Option<&Node>) -> Result<EpistemicPlan> {
     }
     if let Some(node) = section.get("inner") {
         plan.inner = read::integer(node, INNER.0, INNER.1, "128")?;
-        if plan.inner % 2 != 0 {
+        if !plan.inner.is_multiple_of(2) {
             let problem = format!("{} descents have no halves", plan.inner);
             return Err(node.place.error(problem, "expected an even number, such as 128"));
         }

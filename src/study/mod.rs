@@ -74,6 +74,10 @@ pub struct Study {
     pub trade: TradePlan,
     /// What a plan of tightenings is to reach, and by which means.
     pub tighten: TightenPlan,
+    /// What the first calibrated card among later ones was made from.
+    pub calibrated_from: Option<String>,
+    /// The study under the cards before that one: what was believed before the calibration.
+    pub prior: Option<Box<Study>>,
     /// How what varies is told apart from what is not known.
     pub epistemic: EpistemicPlan,
     /// The design values that were stated, as written, in the order of [`Target`].

@@ -107,6 +107,10 @@ pub(super) static CARD: &[KeyInfo] = &[
     key("description", "what the card is about"),
     key("correlation", "dependence between two inputs, as a Gaussian copula"),
     key(
+        "calibrated_from",
+        "what a calibrated card was made from; a run then tells what it changed of the cards before it",
+    ),
+    key(
         "joint",
         "inputs that are drawn together from the rows of a file, such as a posterior sample",
     ),

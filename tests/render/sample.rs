@@ -42,6 +42,7 @@ fn run(settings: &[&str]) -> Sample {
         pick_freeze,
         shapley: Err(unasked()),
         trade: Err(unasked()),
+        calibrated: None,
         epistemic: campaign::epistemic::run_epistemic(&study, &progress)
             .expect("nested descents")
             .ok_or_else(|| "none".to_owned()),

@@ -92,6 +92,9 @@ pub fn share_sample(
     Ok(ShareSample { rows, inner, factors: factors.len(), margins })
 }
 
+/// Variance, first-order and total indices.
+type Indices = (f64, Vec<f64>, Vec<f64>);
+
 /// Sums over some rows: what variance and indices are made from.
 #[derive(Debug, Clone)]
 struct Sums {
@@ -122,7 +125,7 @@ impl Sums {
     }
 
     /// Variance, first-order and total indices.
-    fn indices(&self) -> (f64, Vec<f64>, Vec<f64>) {
+    fn indices(&self) -> Indices {
         let mean = self.mean / self.rows;
         // Products are about a centre near the mean; what is left of it is taken off.
         let variance = self.square / self.rows - mean * mean;
@@ -180,7 +183,7 @@ pub fn shares(
             vec![Estimate::none("the probability does not vary with the unknowns"); sample.factors];
         return Ok(Shares { variance: 0.0, first: none.clone(), total: none });
     }
-    let without: Vec<(f64, Vec<f64>, Vec<f64>)> = groups
+    let without: Vec<Indices> = groups
         .iter()
         .map(|group| {
             let mut rest = all.clone();
@@ -188,7 +191,7 @@ pub fn shares(
             rest.indices()
         })
         .collect();
-    let estimate = |value: f64, of: &dyn Fn(&(f64, Vec<f64>, Vec<f64>)) -> f64| {
+    let estimate = |value: f64, of: &dyn Fn(&Indices) -> f64| {
         let groups = GROUPS as f64;
         let mean = without.iter().map(of).sum::<f64>() / groups;
         let squares: f64 = without.iter().map(|part| (of(part) - mean) * (of(part) - mean)).sum();

@@ -52,7 +52,7 @@ fn belief(event: &EpistemicEvent) -> Option<Figure> {
     let whole: Vec<(f64, f64)> =
         std::iter::once((first, 0.0)).chain(curve).chain([(last, 1.0)]).collect();
     chart.line(&whole, BLUE, 2.2, false);
-    chart.dots(&[(mean, 0.0)], INK, 4.2, 1.0);
+    chart.dots(&[(mean, 0.02)], INK, 4.2, 1.0);
     if let Some(allowed) = allowed {
         chart.vertical_limit(allowed, format!("allowed {}", probability(allowed)));
     }
