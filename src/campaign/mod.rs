@@ -6,14 +6,18 @@
 
 pub mod common_numbers;
 mod evaluate;
+pub mod given_sample;
 pub mod known;
 mod limit_state;
 mod looks;
 mod pick_freeze;
 mod rare;
 mod record;
+mod refutation;
 pub mod scores;
+pub mod screening;
 pub mod shapley;
+pub mod sweep;
 pub mod tighten;
 pub mod trade;
 mod verification;

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod check;
+mod compare;
 mod descend;
 mod describe;
 mod diagnostics;
@@ -12,6 +13,8 @@ mod replay;
 mod rig;
 mod rig_arguments;
 mod run;
+mod sensitivity_table;
+mod sweep;
 mod tighten;
 mod trade_tables;
 mod watch;
@@ -66,6 +69,8 @@ fn carry_out(arguments: Arguments) -> Result<Ending> {
         None => run::run(&arguments.run),
         Some(Command::Run(run)) => run::run(&run),
         Some(Command::Descend(descend)) => descend::descend(&descend),
+        Some(Command::Compare(compare)) => compare::compare(&compare),
+        Some(Command::Sweep(sweep)) => sweep::sweep(&sweep),
         Some(Command::Tighten(tighten)) => tighten::tighten(&tighten),
         Some(Command::Paper(paper)) => paper::paper(&paper),
         Some(Command::Rig(rig)) => rig::rig(&rig),

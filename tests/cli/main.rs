@@ -2,6 +2,7 @@
 
 mod acceptance;
 mod artefacts;
+mod comparing;
 mod determinism;
 mod disk;
 mod errors;
@@ -12,4 +13,7 @@ mod published;
 mod readers;
 mod replaying;
 mod rig;
+mod sweeping;
+mod tighten;
+mod together;
 mod verdicts;

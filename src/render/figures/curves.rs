@@ -2,7 +2,8 @@
 
 use super::Figure;
 use super::axis::Axis;
-use super::chart::{Chart, HEIGHT, PALETTE, Swatch};
+use super::chart::{Chart, HEIGHT, PALETTE};
+use super::key::Swatch;
 
 /// One curve, in the units shown.
 pub(super) struct Curve {

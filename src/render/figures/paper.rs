@@ -2,8 +2,9 @@
 
 use super::Figure;
 use super::axis::Axis;
-use super::chart::{BLUE, Chart, HEIGHT, Swatch, VERMILLION};
+use super::chart::{BLUE, Chart, HEIGHT, VERMILLION};
 use super::curves;
+use super::key::Swatch;
 use crate::descent::reference::Sample;
 use crate::findings::PaperRuns;
 use crate::units::{Quantity, display, number};
