@@ -4,4 +4,5 @@ mod curves;
 mod derivatives;
 mod known;
 mod plans;
+mod rig_plans;
 mod shapley;
