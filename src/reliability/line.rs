@@ -47,7 +47,7 @@ pub struct LineOptions {
 impl Default for LineOptions {
     fn default() -> Self {
         LineOptions {
-            lines: 1000,
+            lines: 2000,
             reach: 8.0,
             cells: 24,
             confidence: 0.95,
