@@ -115,6 +115,14 @@ impl Breaches {
         self.breached.len()
     }
 
+    /// Some of the rows, in their order.
+    pub fn part(&self, rows: Range<usize>) -> Self {
+        Breaches {
+            breached: self.breached[rows.clone()].to_vec(),
+            unknown: self.unknown[rows].to_vec(),
+        }
+    }
+
     /// Whether the event happened in row `k`; `None` where that is not known.
     pub fn happened(&self, event: Event, k: usize) -> Option<bool> {
         let mask = match event {
@@ -195,6 +203,27 @@ impl<'a> CommonSample<'a> {
         Self::drawn(study, &sampler, 0..rows)
     }
 
+    /// The study's own points of these indices, ascending.
+    ///
+    /// # Errors
+    /// What [`sampler`] refuses, and an index beyond the design.
+    pub fn of_rows(study: &'a Study, rows: &[usize]) -> Result<Self> {
+        let sampler = sampler(study)?;
+        let mut uniforms = Columns::new(rows.len(), study.joint.dimension());
+        let mut start = 0;
+        while start < rows.len() {
+            let next = rows[start..].windows(2).take_while(|pair| pair[1] == pair[0] + 1);
+            let run = next.count() + 1;
+            let mut block = Columns::new(run, uniforms.columns());
+            sampler.fill(rows[start] as u64, &mut block)?;
+            for j in 0..uniforms.columns() {
+                uniforms.column_mut(j)[start..start + run].copy_from_slice(block.column(j));
+            }
+            start += run;
+        }
+        Ok(Self::at(study, sampler.replicates() as usize, uniforms))
+    }
+
     /// Independent points of a purpose's stream, by their indices.
     ///
     /// # Errors
@@ -210,6 +239,11 @@ impl<'a> CommonSample<'a> {
         let count = rows.end.saturating_sub(rows.start) as usize;
         let mut uniforms = Columns::new(count, study.joint.dimension());
         sampler.fill(rows.start, &mut uniforms)?;
+        Ok(Self::at(study, sampler.replicates() as usize, uniforms))
+    }
+
+    /// The draws at points of the unit cube.
+    fn at(study: &'a Study, replicates: usize, uniforms: Columns) -> Self {
         let points = match study.joint.copula() {
             None => uniforms,
             Some(copula) => {
@@ -223,15 +257,24 @@ impl<'a> CommonSample<'a> {
                 correlated
             }
         };
-        let replicates = sampler.replicates() as usize;
         let inputs = Columns::new(points.rows(), points.columns());
         let mut sample = CommonSample { study, replicates, points, inputs };
-        let columns: Vec<usize> = (0..study.inputs.len()).collect();
+        let columns: Vec<usize> = (0..study.inputs.len()).filter(|&j| sample.is_alone(j)).collect();
         let values = in_parallel(&columns, |&j| sample.column(&study.inputs[j].marginal, j));
-        for (j, column) in values.iter().enumerate() {
+        for (&j, column) in columns.iter().zip(&values) {
             sample.inputs.column_mut(j).copy_from_slice(column);
         }
-        Ok(sample)
+        sample.fill_drawn_together();
+        sample
+    }
+
+    /// Writes the inputs that are drawn together with others.
+    fn fill_drawn_together(&mut self) {
+        let CommonSample { study, points, inputs, .. } = self;
+        match study.joint.copula() {
+            None => study.joint.fill_from_uniform(points, inputs),
+            Some(_) => study.joint.fill_from_standard_normal(points, inputs),
+        }
     }
 
     /// The study.
@@ -255,8 +298,30 @@ impl<'a> CommonSample<'a> {
         &self.inputs
     }
 
+    /// The normal scores Φ⁻¹(F(x)) of an input.
+    pub fn normal_scores(&self, j: usize) -> Vec<f64> {
+        let mut scores = self.points.column(j).to_vec();
+        if self.study.joint.copula().is_none() {
+            crate::numerics::special::normal::quantile_column(self.points.column(j), &mut scores);
+        }
+        scores
+    }
+
+    /// Input `j` under the law `marginal`. One that is drawn together with others keeps the rank that its row
+    /// has among the rows: what depends on what stays, and the law alone changes.
     fn column(&self, marginal: &Marginal, j: usize) -> Vec<f64> {
         let mut values = vec![0.0; self.rows()];
+        if self.study.joint.sample_of(j).is_some() {
+            let own = &self.study.inputs[j].marginal;
+            for (value, &x) in values.iter_mut().zip(self.inputs.column(j)) {
+                let (below, above) = (own.cdf(x), own.survival(x));
+                *value = match below <= above {
+                    true => marginal.quantile_lower(below),
+                    false => marginal.quantile_upper(above),
+                };
+            }
+            return values;
+        }
         match self.study.joint.copula() {
             None => marginal.quantile_column(self.points.column(j), &mut values),
             Some(_) => marginal.from_standard_normal_column(self.points.column(j), &mut values),
@@ -277,6 +342,14 @@ impl<'a> CommonSample<'a> {
     /// # Errors
     /// If a design value does not fit an input's law.
     pub fn changed(&self, change: &Change, progress: &Progress) -> Result<Breaches> {
+        Ok(Breaches::of(self.study, &self.table(change, progress)?))
+    }
+
+    /// What becomes of a variant of the study at these points.
+    ///
+    /// # Errors
+    /// As [`Self::changed`].
+    pub fn table(&self, change: &Change, progress: &Progress) -> Result<OutcomeTable> {
         let mut study = self.study.clone();
         let mut inputs = self.inputs.clone();
         let mut marginals = change.marginals.clone();
@@ -286,7 +359,7 @@ impl<'a> CommonSample<'a> {
                 if input.target == target {
                     let changed = marginals.iter().position(|(k, _)| *k == j);
                     let law = changed.map_or(&input.marginal, |at| &marginals[at].1);
-                    let moved = law.with_shifted_mean(value - law.law().mean())?;
+                    let moved = law.with_shifted_mean(value - law.law().anchor())?;
                     marginals.retain(|(k, _)| *k != j);
                     marginals.push((j, moved));
                 }
@@ -298,8 +371,7 @@ impl<'a> CommonSample<'a> {
         if !change.known.is_empty() {
             self.condition(&change.known, &marginals, &mut inputs)?;
         }
-        let table = Ensemble::new(&study).at_inputs(&inputs, progress);
-        Ok(Breaches::of(&study, &table))
+        Ok(Ensemble::new(&study).at_inputs(&inputs, progress))
     }
 
     /// Gives every row the known values, and the inputs that depend on them their laws given those.
@@ -325,7 +397,7 @@ impl<'a> CommonSample<'a> {
             for k in 0..points.rows() {
                 conditioning.apply(&mut points, k, &targets);
             }
-            for j in 0..points.columns() {
+            for j in (0..points.columns()).filter(|&j| self.is_alone(j)) {
                 law(j).from_standard_normal_column(points.column(j), inputs.column_mut(j));
             }
         }
@@ -335,6 +407,11 @@ impl<'a> CommonSample<'a> {
         Ok(())
     }
 
+    /// Whether input `j` is not drawn together with others.
+    fn is_alone(&self, j: usize) -> bool {
+        self.study.joint.sample_of(j).is_none()
+    }
+
     fn rows_of_correlation(&self, copula: &crate::uncertainty::Copula) -> Vec<Vec<f64>> {
         let n = copula.dimension();
         let row = |i| (0..n).map(|j| copula.normal_correlation(i, j)).collect();
@@ -342,16 +419,23 @@ impl<'a> CommonSample<'a> {
     }
 
     /// Draws in which row `k` keeps the inputs `given` of row `of(k)` of this sample and takes the others
-    /// from `others`' row `k`, by their laws given those.
+    /// from `others`' row `k`, by their laws given those. Inputs that are drawn together are given together.
     ///
     /// # Errors
-    /// If the copula cannot be conditioned so.
+    /// If the copula cannot be conditioned so, or some of the inputs drawn together are given and others not.
     pub fn mixed(
         &self,
         given: &[usize],
         of: impl Fn(usize) -> usize,
         others: &CommonSample<'_>,
     ) -> Result<Columns> {
+        for sample in self.study.joint.samples() {
+            let count = sample.inputs().iter().filter(|j| given.contains(j)).count();
+            if count != 0 && count != sample.inputs().len() {
+                let reason = "inputs that are drawn together cannot be given apart";
+                return Err(Error::argument(reason));
+            }
+        }
         let mut inputs = others.inputs.clone();
         if let Some(copula) = self.study.joint.copula() {
             let conditioning = Conditioning::new(self.rows_of_correlation(copula), given)?;
@@ -360,7 +444,7 @@ impl<'a> CommonSample<'a> {
                 let targets: Vec<f64> = given.iter().map(|&j| self.points.get(of(k), j)).collect();
                 conditioning.apply(&mut points, k, &targets);
             }
-            for j in 0..points.columns() {
+            for j in (0..points.columns()).filter(|&j| self.is_alone(j)) {
                 let marginal = &self.study.inputs[j].marginal;
                 marginal.from_standard_normal_column(points.column(j), inputs.column_mut(j));
             }
@@ -375,7 +459,7 @@ impl<'a> CommonSample<'a> {
     }
 
     /// The breaches at draws of the study.
-    pub fn at(&self, inputs: &Columns, progress: &Progress) -> Breaches {
+    pub fn breaches_at(&self, inputs: &Columns, progress: &Progress) -> Breaches {
         Breaches::of(self.study, &Ensemble::new(self.study).at_inputs(inputs, progress))
     }
 }

@@ -6,6 +6,7 @@
 
 pub mod common_numbers;
 mod evaluate;
+pub mod given_sample;
 pub mod known;
 mod limit_state;
 mod looks;
@@ -13,7 +14,9 @@ mod pick_freeze;
 mod rare;
 mod record;
 pub mod scores;
+pub mod screening;
 pub mod shapley;
+pub mod sweep;
 pub mod tighten;
 pub mod trade;
 mod verification;

@@ -2,8 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::sampling::Design;
-use crate::store::{Parentage, read_number_column};
-use crate::study::{Files, NamedText, Override, Study, assemble};
+use crate::store::{PARQUET, Parentage};
+use crate::study::{Files, NamedText, Override, SampleFile, Study, assemble};
 use std::collections::{BTreeMap, VecDeque};
 use std::path::Path;
 
@@ -44,13 +44,15 @@ pub(super) fn of(study: &Study) -> Parentage {
 }
 
 /// The digest of everything that fixes a row of the table: the resolved study without its requirement,
-/// its stopping rule, its sensitivity, reliability and trade plans and, for a design whose longer run begins with the shorter, its
-/// number of samples.
+/// its stopping rule, its sensitivity, reliability, trade and tightening plans, what its inputs cost, when they are
+/// known and how they are grouped, and, for a design whose longer run begins with the shorter, without its number
+/// of samples.
 pub(super) fn row_digest(study: &Study) -> String {
     let mut rows = study.clone();
     rows.requirement = None;
     rows.sensitivity.base_samples = 0;
     rows.sensitivity.bootstrap = 0;
+    rows.sensitivity.pairs.clear();
     rows.reliability = Default::default();
     rows.trade.samples = 0;
     rows.tighten.target = None;
@@ -58,6 +60,9 @@ pub(super) fn row_digest(study: &Study) -> String {
     rows.tighten.design.clear();
     for input in &mut rows.inputs {
         input.cost = Default::default();
+        // When it becomes known, and with what it is looked at, moves no sample.
+        input.known = crate::study::Known::Never;
+        input.group = None;
     }
     rows.sampling.stopping = None;
     if rows.sampling.design != Design::LatinHypercube {
@@ -66,7 +71,7 @@ pub(super) fn row_digest(study: &Study) -> String {
     rows.digest()
 }
 
-/// The study of a file, from its footer alone (and the data files of empirical laws, if it has any).
+/// The study of a file, from its footer alone (and the data files of empirical laws and joint samples, if it has any).
 ///
 /// # Errors
 /// If the footer is of another version, or the study made of it is not the one it names.
@@ -124,6 +129,10 @@ impl Files for Recorded {
         name: &str,
         column: &str,
     ) -> std::result::Result<Vec<f64>, String> {
-        crate::study::read_column(card, name, column, read_number_column)
+        crate::study::read_column(card, name, column, PARQUET)
+    }
+
+    fn sample(&mut self, card: &str, name: &str) -> std::result::Result<SampleFile, String> {
+        crate::study::read_sample(card, name, PARQUET)
     }
 }

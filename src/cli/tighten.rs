@@ -6,7 +6,7 @@ use super::run::quoted;
 use super::watch::{Watch, stop_on_interrupt};
 use super::{Ending, done};
 use crate::campaign::{self, Progress};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::findings::known::GoAnswer;
 use crate::findings::tighten::{TightenFinding, tighten as findings};
 use crate::render;
@@ -33,14 +33,13 @@ pub(super) fn tighten(arguments: &TightenArguments) -> Result<Ending> {
         return Ok(Ending::Interrupted);
     };
     let finding = findings(&study, &found, command(arguments))?;
-    let json = serde_json::to_string_pretty(&finding)
-        .map_err(|reason| Error::argument(format!("the plan cannot be written: {reason}")))?;
+    let json = render::json(&finding)?;
     if let Some(directory) = &arguments.out {
-        write_text(&directory.join("tighten.json"), &format!("{json}\n"))?;
+        write_text(&directory.join("tighten.json"), &json)?;
         write_text(&directory.join("tighten.md"), &render::tighten_markdown(&finding))?;
     }
     if arguments.json {
-        done(&json)?;
+        done(json.trim_end())?;
     } else {
         say(&render::tighten_terminal(&finding))?;
     }

@@ -13,6 +13,7 @@ pub mod paired;
 pub mod probability;
 pub mod quantiles;
 pub mod replicates;
+pub mod unpaired;
 
 // Limit states in standard-normal space and the methods that walk them.
 pub mod adaptive;

@@ -20,6 +20,7 @@ pub(super) struct Known {
 #[derive(Debug, Serialize)]
 pub(super) struct MapTable {
     pub title: String,
+    pub about: String,
     /// Values of the second input.
     pub header: Vec<String>,
     pub rows: Vec<TradeRow>,
@@ -94,6 +95,7 @@ fn map(map: &GoMap) -> MapTable {
     };
     MapTable {
         title: format!("`{first}` ({}) down, `{second}` ({}) across", unit(first), unit(second)),
+        about: about(map),
         header: map.second.iter().map(|&si| shown(second, si)).collect(),
         rows: map
             .first
@@ -105,6 +107,27 @@ fn map(map: &GoMap) -> MapTable {
             })
             .collect(),
     }
+}
+
+fn about(map: &GoMap) -> String {
+    let mut about = match (map.allowed, map.confidence) {
+        (Some(allowed), Some(confidence)) => format!(
+            "Go: P(any breach) ≤ {} is demonstrated at {} confidence given both values; no go: the opposite is, \
+             each cell by itself.",
+            probability(allowed),
+            probability(confidence)
+        ),
+        _ => "The study requires nothing.".to_owned(),
+    };
+    about += &format!(
+        " {} descents a cell, the same points in every cell; everything else is as uncertain as the card says.",
+        count(map.samples)
+    );
+    if map.lot {
+        about += " The second value is that of the lot of fluid at hand, as measured at rest and taken as exact; \
+                  what shear does to it stays uncertain.";
+    }
+    about
 }
 
 fn words(answer: GoAnswer) -> &'static str {

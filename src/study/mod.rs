@@ -14,26 +14,33 @@ mod inputs;
 mod law;
 mod laws;
 mod load;
+pub mod measured_run;
+mod over;
 mod overrides;
+mod pairs;
 mod place;
 mod read;
 mod resolved;
 pub mod schema;
 mod sections;
 mod tighten;
+mod together;
 mod until;
 mod vocabulary;
 
 use crate::descent::{Model, Outcome, OutcomeQuantity};
 use crate::physics::design::{Design, Target};
 use crate::sampling;
-use crate::uncertainty::{Joint, Marginal, Measure};
+use crate::uncertainty::{Joint, Marginal, Measure, Readings};
 
 pub use assemble::{Files, NamedText, assemble};
-pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, ParquetColumn, read_column};
+pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, Parquet, read_column, read_sample};
+pub use measured_run::MeasuredRun;
+pub use over::{MOST_CELLS, Over, design_path, option_error};
 pub use overrides::Override;
 pub use resolved::{ResolvedParameter, UncertainLaw};
 pub use tighten::{DesignRange, Grade, TightenPlan, TighteningCost, TradePlan};
+pub use together::{SampleColumn, SampleFile};
 pub use until::StoppingPlan;
 
 /// A study, resolved: every value in SI, every name known.
@@ -52,6 +59,8 @@ pub struct Study {
     pub joint: Joint,
     /// The statements that the joint distribution's dependence was made from.
     pub correlations: Vec<Correlation>,
+    /// The files from whose rows several inputs are drawn together.
+    pub drawn_together: Vec<DrawnTogether>,
     /// What a descent must not breach, in the order of [`OutcomeQuantity`], upper limit first.
     pub limits: Vec<Limit>,
     /// What the verdict is held against.
@@ -89,6 +98,8 @@ pub struct Input {
     pub target: Target,
     /// Its distribution, SI.
     pub marginal: Marginal,
+    /// The readings that the distribution predicts from, if it is made of some.
+    pub readings: Option<Readings>,
     /// When its value becomes known.
     pub known: Known,
     /// Where the distribution comes from.
@@ -142,6 +153,21 @@ pub struct Correlation {
     pub measure: Measure,
     /// Where it comes from.
     pub source: String,
+}
+
+/// Inputs that are drawn together from the rows of a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DrawnTogether {
+    /// What the sample is called as one factor.
+    pub name: String,
+    /// The file as the card names it.
+    pub file: String,
+    /// SHA-256 of the file, in hexadecimal.
+    pub sha256: String,
+    /// Number of rows, each equally likely.
+    pub rows: usize,
+    /// Places of the inputs in [`Study::inputs`], ascending.
+    pub inputs: Vec<usize>,
 }
 
 /// Which side of a limit is allowed.
@@ -243,12 +269,14 @@ pub struct Numerics {
 }
 
 /// How the sensitivity indices are estimated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SensitivityPlan {
     /// Rows of each block of the pick-freeze design; 0 leaves the indices out.
     pub base_samples: u64,
     /// Number of bootstrap resamples behind each interval.
     pub bootstrap: u32,
+    /// Pairs of inputs, by path or group, whose second-order index is asked for.
+    pub pairs: Vec<(String, String)>,
 }
 
 /// How small probabilities are estimated.

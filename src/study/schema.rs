@@ -7,8 +7,8 @@ use super::Known;
 use super::correlation::MEASURES;
 use super::laws::{Kind, LAWS, LawInfo, TERMS, keys_of};
 use super::vocabulary::{
-    CARD, CORRELATION, GRADE, INPUT, KeyInfo, LIMIT, METHODS, NUMERICS, RELIABILITY, REQUIREMENT,
-    SAMPLING, SENSITIVITY, STUDY, TIGHTEN, TRADE, UNTIL,
+    CARD, CORRELATION, GRADE, INPUT, JOINT, KeyInfo, LIMIT, METHODS, NUMERICS, RELIABILITY,
+    REQUIREMENT, SAMPLING, SENSITIVITY, STUDY, TIGHTEN, TRADE, UNTIL,
 };
 use crate::descent::{Model, OutcomeQuantity};
 use crate::physics::parameters::{PARAMETERS, Parameter, ParameterInfo};
@@ -33,8 +33,17 @@ pub fn study() -> Value {
     insert(&mut sampling, "not", json!({ "required": ["samples", "until"] }));
     let numerics =
         table(NUMERICS, |_| json!({ "type": "number", "minimum": 1e-12, "maximum": 1e-2 }), &[]);
-    let sensitivity =
-        table(SENSITIVITY, |info| whole(if info.name == "bootstrap" { 20 } else { 0 }), &[]);
+    let names = json!({ "type": "string", "pattern": "\\S" });
+    let pair = json!({ "type": "array", "items": names, "minItems": 2, "maxItems": 2 });
+    let sensitivity = table(
+        SENSITIVITY,
+        |info| match info.name {
+            "bootstrap" => whole(100),
+            "pairs" => json!({ "type": "array", "items": pair, "uniqueItems": true }),
+            _ => whole(0),
+        },
+        &[],
+    );
     let methods = json!({ "type": "array", "items": { "enum": METHODS }, "uniqueItems": true });
     let reliability = table(RELIABILITY, |_| methods.clone(), &[]);
     let trade = table(TRADE, |_| json!({ "anyOf": [{ "const": 0 }, whole(100)] }), &[]);
@@ -90,6 +99,7 @@ pub fn card() -> Value {
     for info in CARD {
         let value = match info.name {
             "correlation" => json!({ "type": "array", "items": correlation() }),
+            "joint" => json!({ "type": "array", "items": joint() }),
             _ => text("HABE reel-down brake, as designed"),
         };
         properties.insert(info.name.to_owned(), described(value, info.description));
@@ -396,6 +406,19 @@ fn law_rule(law: &LawInfo, names: &[&str]) -> Value {
             "propertyNames": { "enum": allowed },
         },
     })
+}
+
+/// Inputs that are drawn together.
+fn joint() -> Value {
+    let value = |info: &KeyInfo| match info.name {
+        "file" => text("posterior.parquet"),
+        "columns" => paths(|_| text("shear_factor"), text("gap_3_m")),
+        "sha256" => json!({ "type": "string", "pattern": "^\\s*[0-9a-fA-F]{64}\\s*$" }),
+        "known" => json!({ "enum": Known::ALL.map(Known::name) }),
+        "cost" => cost(),
+        _ => text("posterior of the truck tests"),
+    };
+    table(JOINT, value, &["file", "known", "source"])
 }
 
 fn correlation() -> Value {

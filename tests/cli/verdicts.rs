@@ -75,6 +75,25 @@ fn property_an_error_leaves_standard_output_empty() {
 }
 
 #[test]
+fn property_a_run_ends_with_sketches_and_the_verdict_in_80_columns() {
+    let place = Place::new("sketch");
+    let answer = run(&place, &[STRICT, &["--samples", "2000"]]).ended_with(3);
+    let end: Vec<&str> = answer.out.lines().rev().take(6).collect();
+    assert!(end[0].starts_with("report: "), "{}", answer.out);
+    assert!(end[1].starts_with("NOT MET: P(any breach) 4") && end[1].ends_with("allowed 1 %"));
+    for (line, title) in end[3..6].iter().rev().zip(["reel-down time", "final sep", "peak fluid"]) {
+        assert!(line.starts_with(title) && line.contains('█'), "{line}");
+        assert_eq!(line.matches('┃').count(), 1, "one limit: {line}");
+    }
+    assert!(end[5].contains("% beyond"), "{}", end[5]);
+    assert!(end[1..6].iter().all(|line| line.chars().count() <= 80), "{end:#?}");
+    // Without breaches the limit stands apart.
+    let answer = run(&place, &[LENIENT, &["--samples", "300"]]).ended_with(0);
+    assert_eq!(answer.out.matches(" ┃").count(), 3, "{}", answer.out);
+    assert_eq!(answer.out.matches("no breach\n").count(), 3, "{}", answer.out);
+}
+
+#[test]
 fn property_quiet_prints_nothing() {
     let place = Place::new("quiet");
     let answer = run(&place, &[STRICT, &["--samples", "200", "--quiet"]]).ended_with(3);

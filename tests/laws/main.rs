@@ -2,7 +2,9 @@
 
 mod copula;
 mod families;
+mod joint_sample;
 mod properties;
 mod published;
+mod readings;
 mod reference;
 mod special;

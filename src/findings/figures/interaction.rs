@@ -1,9 +1,10 @@
 //! Where in the plane of the two strongest inputs a breach happens.
 
+use crate::campaign::common_numbers::CommonSample;
 use crate::campaign::{self, Record};
 use crate::error::Result;
 use crate::findings::drivers::{DriverOutput, DriversFinding};
-use crate::numerics::columns::Columns;
+use crate::sensitivity::pick_freeze::Factor;
 use crate::study::Study;
 use serde::Serialize;
 
@@ -21,10 +22,24 @@ pub struct Interaction {
     pub x: InteractionInput,
     /// The next.
     pub y: InteractionInput,
+    /// Which samples of the run are shown, by their index: their values are the rows of the table of samples.
+    pub samples: Samples,
     /// Whether each sample breached any limit.
+    #[serde(skip)]
     pub breached: Vec<bool>,
     /// How many of them, the last ones, are breaches of later samples, added because they are rare.
     pub added: usize,
+}
+
+/// Which samples are shown.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Samples {
+    /// All of the first so many that could be computed.
+    pub first: usize,
+    /// Breaches among the later ones.
+    pub and: Vec<usize>,
+    /// How many of the first ones breached.
+    pub breached: usize,
 }
 
 /// One input of each sample shown.
@@ -34,7 +49,8 @@ pub struct InteractionInput {
     pub path: String,
     /// How many inputs are averaged.
     pub inputs: usize,
-    /// Values, SI.
+    /// Values, SI: too many for a tree of findings.
+    #[serde(skip)]
     pub values: Vec<f64>,
 }
 
@@ -50,10 +66,15 @@ pub(super) fn interaction(
     if study.limits.is_empty() {
         return Ok(Err("the study states no limit".to_owned()));
     }
-    let Some((output, [first, second])) = strongest(study, drivers) else {
+    let mut factors = campaign::factors(study);
+    // The mean of different quantities has no meaning.
+    factors.retain(|factor| {
+        let parameter = |&j: &usize| study.inputs[j].target.parameter;
+        factor.columns.windows(2).all(|pair| parameter(&pair[0]) == parameter(&pair[1]))
+    });
+    let Some((output, [first, second])) = strongest(study, drivers, &factors) else {
         return Ok(Err("no two inputs have a sensitivity index".to_owned()));
     };
-    let factors = campaign::factors(study);
     let columns_of = |name: &str| factors.iter().find(|factor| factor.name == name);
     let (Some(x), Some(y)) = (columns_of(first), columns_of(second)) else {
         return Ok(Err("no two inputs have a sensitivity index".to_owned()));
@@ -67,8 +88,10 @@ pub(super) fn interaction(
     let missing = WANTED.saturating_sub(seen);
     let rest: Vec<usize> = (shown..total).filter(|&k| breached(k)).take(missing).collect();
     let added = rest.len();
+    let samples = Samples { first: shown, breached: seen, and: rest.clone() };
     chosen.extend(rest);
-    let draws = draws(study, &chosen)?;
+    let sample = CommonSample::of_rows(study, &chosen)?;
+    let draws = sample.inputs();
     let input = |name: &str, columns: &[usize]| InteractionInput {
         path: name.trim_end_matches(" (all)").to_owned(),
         inputs: columns.len(),
@@ -78,6 +101,7 @@ pub(super) fn interaction(
     };
     Ok(Ok(Interaction {
         output: output.title.clone(),
+        samples,
         x: input(first, &x.columns),
         y: input(second, &y.columns),
         breached: chosen.iter().map(|&k| breached(k)).collect(),
@@ -89,6 +113,7 @@ pub(super) fn interaction(
 fn strongest<'a>(
     study: &Study,
     drivers: &'a DriversFinding,
+    factors: &[Factor],
 ) -> Option<(&'a DriverOutput, [&'a str; 2])> {
     let limited = study.limits.iter().map(|limit| limit.outcome.name());
     std::iter::once("breach.any").chain(limited).find_map(|name| {
@@ -97,6 +122,7 @@ fn strongest<'a>(
             .factors
             .iter()
             .filter(|factor| !factor.grouped)
+            .filter(|factor| factors.iter().any(|shown| shown.name == factor.name))
             .filter_map(|factor| Some((factor.indices.total.value?, factor.name.as_str())))
             .collect();
         factors.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -105,24 +131,4 @@ fn strongest<'a>(
             _ => None,
         }
     })
-}
-
-/// The inputs of these samples again: a sample is a function of its index.
-fn draws(study: &Study, chosen: &[usize]) -> Result<Columns> {
-    let sampler = campaign::sampler(study)?;
-    let dimension = sampler.dimension();
-    let mut points = Columns::new(chosen.len(), dimension);
-    let mut start = 0;
-    while start < chosen.len() {
-        let run = chosen[start..].windows(2).take_while(|pair| pair[1] == pair[0] + 1).count() + 1;
-        let mut block = Columns::new(run, dimension);
-        sampler.fill(chosen[start] as u64, &mut block)?;
-        for j in 0..dimension {
-            points.column_mut(j)[start..start + run].copy_from_slice(block.column(j));
-        }
-        start += run;
-    }
-    let mut draws = Columns::new(chosen.len(), dimension);
-    study.joint.from_uniform(&points, &mut draws);
-    Ok(draws)
 }

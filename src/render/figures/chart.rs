@@ -113,6 +113,10 @@ impl Chart {
             layout = layout.with_y_categories(rows);
         }
         let mut computed = ComputedLayout::from_layout(&layout);
+        // kuva takes the width of the ticks on a logarithmic axis for that of its ends.
+        let wider = (text_width(&y.widest_decade()) - computed.y_tick_label_px).max(0.0);
+        computed.y_tick_label_px += wider;
+        computed.margin_left += wider;
         let lines = key_rows(&keys, WIDTH - 16.0).len() as f64;
         let header = 6.0 + lines * ROW;
         computed.margin_top = header + if vertical_limits { ROW + 4.0 } else { 6.0 };
@@ -223,6 +227,52 @@ impl Chart {
             stroke_width: width,
             stroke_dasharray: dashed.then(|| "6 4".to_owned()),
         });
+    }
+
+    /// Closed polygons filled as one, so that those that share an edge show no seam.
+    pub fn region(&mut self, polygons: &[Vec<(f64, f64)>], fill: &str) {
+        let path = |polygon: &Vec<(f64, f64)>| self.path(polygon) + "Z";
+        let d: String = polygons.iter().map(path).collect();
+        self.path_of(d, Color::from(fill), Color::None, 0.0);
+    }
+
+    /// Many short lines as one curve, such as a contour.
+    pub fn contour(&mut self, segments: &[[(f64, f64); 2]], stroke: &str, width: f64) {
+        let d: String = segments.iter().map(|segment| self.path(segment)).collect();
+        self.path_of(d, Color::None, Color::from(stroke), width);
+    }
+
+    fn path(&self, points: &[(f64, f64)]) -> String {
+        let mut d = String::new();
+        for (k, &(x, y)) in points.iter().enumerate() {
+            let (x, y) = self.place(x, y);
+            d += &format!("{}{x:.2} {y:.2}", if k == 0 { "M" } else { "L" });
+        }
+        d
+    }
+
+    fn path_of(&mut self, d: String, fill: Color, stroke: Color, stroke_width: f64) {
+        if d.is_empty() {
+            return;
+        }
+        self.add(Primitive::Path(Box::new(PathData {
+            d,
+            fill: Some(fill),
+            stroke,
+            stroke_width,
+            opacity: None,
+            stroke_dasharray: None,
+        })));
+    }
+
+    /// A short text centred at a point of the panel, kept inside it.
+    pub fn note(&mut self, (x, y): (f64, f64), content: &str) {
+        let (x, y) = self.place(x, y);
+        let (c, half) = (&self.computed, text_width(content) / 2.0 + 3.0);
+        let (left, right) = (c.margin_left + half, c.width - c.margin_right - half);
+        let (top, bottom) = (c.margin_top + 14.0, c.height - c.margin_bottom - 5.0);
+        let (x, y) = (x.clamp(left, right.max(left)), (y + 4.5).clamp(top, bottom.max(top)));
+        self.text(x, y, content.to_owned(), TextAnchor::Middle);
     }
 
     /// Dots.
