@@ -17,6 +17,7 @@ mod probabilities;
 mod rare;
 mod sequence;
 pub mod shapley;
+mod story;
 pub mod sweep;
 pub mod tighten;
 pub mod trade;
@@ -227,7 +228,7 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
         verdict: demonstration::verdict(study, record)?,
         stopping: sequence::stopping(study, record.counts().samples(), evidence.stop),
         probabilities: probabilities::probabilities(study, record)?,
-        rare: rare::rare(study, &evidence.rare),
+        rare: rare::rare(study, &evidence.rare, evidence.nominal.as_ref().ok()),
         margins: margins::margins(study, record)?,
         outcomes: OutcomeQuantity::ALL.map(|quantity| outcome(record, quantity)).to_vec(),
         nominal: nominal(study, &evidence.nominal),

@@ -31,6 +31,7 @@ pub struct Component {
 
 /// A point by its direction and its distance from the origin, of which densities need the logarithm and
 /// the square.
+#[derive(Clone)]
 struct Polar {
     direction: Vec<f64>,
     ln_radius: f64,
@@ -45,6 +46,9 @@ impl Polar {
         Polar { direction, ln_radius: ln(radius), square }
     }
 }
+
+/// Points that most rounds of a fit are content with.
+const COARSE: usize = 1000;
 
 /// Largest mean resultant length that a fit may claim, lest a lucky cluster close off its surroundings.
 const MOST_RESULTANT: f64 = 0.995;
@@ -192,24 +196,18 @@ impl Mixture {
         let weights: Vec<f64> = kept.iter().map(|&i| weights[i] / total).collect();
         let n = points.first().map_or(0, Vec::len);
         let points: Vec<Polar> = kept.iter().map(|&i| Polar::of(&points[i])).collect();
-        let mut owners = first_owners(&points, &weights, components);
-        let mut fitted: Vec<Component> = Vec::new();
-        let mut likelihood = f64::NEG_INFINITY;
-        for _ in 0..20 {
-            fitted = owners
-                .iter()
-                .filter(|owned| effective(&weights, owned) >= (n as f64).max(20.0))
-                .filter_map(|owned| maximise(&points, &weights, owned))
-                .collect();
-            if fitted.len() < 2 {
-                break;
-            }
-            let (next, gained) = expect(&fitted, &points, &weights);
-            owners = next;
-            if gained - likelihood < 1e-3 {
-                break;
-            }
-            likelihood = gained;
+        // Most of the way on every so many points, the rest on all of them.
+        let stride = (points.len() / COARSE).max(1);
+        let every = || (0..points.len()).step_by(stride);
+        let weight: f64 = every().map(|i| weights[i]).sum();
+        let coarse: Vec<Polar> = every().map(|i| points[i].clone()).collect();
+        let coarse_weights: Vec<f64> = every().map(|i| weights[i] / weight).collect();
+        let owners = first_owners(&coarse, &coarse_weights, components);
+        let least = (n as f64).max(20.0);
+        let mut fitted = improved(&coarse, &coarse_weights, owners, least / stride as f64, 20);
+        if stride > 1 && !fitted.is_empty() {
+            let (owners, _) = expect(&fitted, &points, &weights);
+            fitted = improved(&points, &weights, owners, least, 5);
         }
         if fitted.is_empty() {
             fitted.extend(maximise(&points, &weights, &vec![1.0; points.len()]));
@@ -218,6 +216,36 @@ impl Mixture {
         fitted.iter_mut().for_each(|component| component.share /= shares);
         (!fitted.is_empty()).then_some(Mixture { components: fitted })
     }
+}
+
+/// At most `rounds` of expectation and maximisation, from first owners; components that effectively own
+/// fewer than `least` points are dropped.
+fn improved(
+    points: &[Polar],
+    weights: &[f64],
+    mut owners: Vec<Vec<f64>>,
+    least: f64,
+    rounds: usize,
+) -> Vec<Component> {
+    let mut fitted: Vec<Component> = Vec::new();
+    let mut likelihood = f64::NEG_INFINITY;
+    for _ in 0..rounds {
+        fitted = owners
+            .iter()
+            .filter(|owned| effective(weights, owned) >= least)
+            .filter_map(|owned| maximise(points, weights, owned))
+            .collect();
+        if fitted.len() < 2 {
+            break;
+        }
+        let (next, gained) = expect(&fitted, points, weights);
+        owners = next;
+        if gained - likelihood < 1e-3 {
+            break;
+        }
+        likelihood = gained;
+    }
+    fitted
 }
 
 fn ln_sum(terms: &[f64]) -> f64 {

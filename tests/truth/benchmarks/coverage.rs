@@ -139,12 +139,6 @@ impl Coverage {
         }
     }
 
-    /// Runs seeds 0, 1, … of a method on a problem.
-    pub fn measure(method: Method, benchmark: &Benchmark, seeds: u64, effort: f64) -> Coverage {
-        let run = |seed| Trial::run(method, benchmark, seed, effort);
-        Coverage::of(method, benchmark, &(0..seeds).map(run).collect::<Vec<Trial>>())
-    }
-
     /// Share of the stated intervals that hold the truth, and its Monte Carlo standard error.
     pub fn share(&self) -> Option<(f64, f64)> {
         let n = self.stated as f64;
