@@ -243,6 +243,7 @@ fn published_coverage_certificate_in_short() {
         (Method::SubsetSimulation, "RP53"),
         (Method::LineSampling, "RP33"),
         (Method::DirectionalSampling, "RMINUSS"),
+        (Method::CrossEntropy, "RP25"),
     ] {
         let benchmark = named(id);
         let trials: Vec<Trial> =
