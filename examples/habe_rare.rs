@@ -6,7 +6,7 @@
 
 use reeldown::campaign::{self, Progress, Record};
 use reeldown::error::{Error, Result};
-use reeldown::findings::{self, Evidence, RareFinding};
+use reeldown::findings::{self, RareFinding};
 use reeldown::reliability::agreement::agreement;
 use reeldown::reliability::crude::from_counts;
 use reeldown::reliability::estimate::Estimate;
@@ -77,24 +77,8 @@ fn rare(study: &Study) -> Result<Vec<RareFinding>> {
         record.absorb(&table);
         Ok(())
     })?;
-    let left_out = || "not part of this page".to_owned();
-    let gathered = findings::gather(&Evidence {
-        study,
-        record: &record,
-        stop: None,
-        rare: campaign::rare_events(study, &record, &progress)?,
-        nominal: campaign::nominal(study),
-        verification: campaign::verify(study, &record)?,
-        pick_freeze: Err(left_out()),
-        shapley: Err(left_out()),
-        given: Err(left_out()),
-        screening: Err(left_out()),
-        slopes: campaign::screening::slopes(study),
-        trade: Err(left_out()),
-        known: Err(left_out()),
-        command: "cargo run --release --example habe_rare".to_owned(),
-    })?;
-    Ok(gathered.rare)
+    let events = campaign::rare_events(study, &record, &progress)?;
+    Ok(findings::rare_findings(study, &events, campaign::nominal(study).as_ref().ok()))
 }
 
 fn section(viscosity: &str, finding: &RareFinding) -> Result<String> {

@@ -42,8 +42,18 @@ pub enum Purpose {
     Known,
     /// Random orders and points of the Shapley effects.
     Shapley,
+    /// Sets of values of what is not known.
+    Unknown,
+    /// What varies, with each set.
+    Varying,
+    /// Pick-freeze sets of what is not known.
+    UnknownShares,
+    /// What varies, with each pick-freeze set.
+    VaryingShares,
     /// Trajectories of a screening.
     Screening,
+    /// Brakes and states of knowledge behind a plan of tests.
+    Planning,
     /// Tests and benchmarks.
     Test,
 }
@@ -66,7 +76,12 @@ impl Purpose {
             Purpose::Confirmation => b"confirmn",
             Purpose::Known => b"knownval",
             Purpose::Shapley => b"shapley ",
+            Purpose::Unknown => b"unknownv",
+            Purpose::Varying => b"varyingv",
+            Purpose::UnknownShares => b"unknshar",
+            Purpose::VaryingShares => b"varyshar",
             Purpose::Screening => b"screenng",
+            Purpose::Planning => b"planning",
             Purpose::Test => b"test    ",
         }
     }

@@ -80,7 +80,12 @@ pub struct KnownOutcomes {
 pub fn known_descents(study: &Study) -> u64 {
     let rows = study.trade.samples.min(study.sampling.samples);
     let days = measured(study).len() as u64;
-    let maps = if days > 0 { CELLS * map_rows(rows) } else { 0 };
+    let columns = match (days, lot(study)) {
+        (0, _) | (1, None) => 0,
+        (1, Some(_)) => SETTINGS,
+        _ => COARSE,
+    };
+    let maps = (COARSE * columns) as u64 * map_rows(rows);
     2 * outer(rows) * INNER as u64 + days * SETTINGS as u64 * rows + maps
 }
 
@@ -168,12 +173,12 @@ fn lot_values(study: &Study, target: Target) -> Vec<f64> {
     let stated = study.tighten.design.iter().find(|range| range.target == target);
     let nominal = study.design.at(target);
     let (from, to) = stated.map_or((0.6 * nominal, 1.4 * nominal), |r| (r.lower, r.upper));
-    let last = (SETTINGS / 2) as f64;
-    (0..=SETTINGS / 2).map(|k| from + (to - from) * (k as f64 / last)).collect()
+    let last = (SETTINGS - 1) as f64;
+    (0..SETTINGS).map(|k| from + (to - from) * (k as f64 / last)).collect()
 }
 
-/// Cells of a map: every other setting of the charts, in both directions.
-const CELLS: u64 = ((SETTINGS / 2 + 1) * (SETTINGS / 2 + 1)) as u64;
+/// Values of a measured input in a map: every other setting of its chart.
+const COARSE: usize = SETTINGS / 2 + 1;
 
 /// Samples of a cell: a map has many, and says of each only whether to go.
 fn map_rows(rows: u64) -> u64 {

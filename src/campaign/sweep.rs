@@ -114,7 +114,7 @@ impl Grid {
                 match path.meaning {
                     Meaning::Held => change.known.push((j, conditioned(study, j, value)?)),
                     Meaning::Design | Meaning::Centred => {
-                        let moved = law.with_shifted_mean(value - law.law().mean())?;
+                        let moved = law.with_shifted_mean(value - law.law().anchor())?;
                         change.marginals.push((j, moved));
                     }
                 }
@@ -126,15 +126,21 @@ impl Grid {
 
 /// The value to condition on: just inside the ends of a law on whose value others depend.
 fn conditioned(study: &Study, input: usize, value: f64) -> Result<f64> {
+    let path = study.inputs[input].target.path();
+    if study.joint.sample_of(input).is_some() {
+        return Err(Error::argument(format!(
+            "{path} is drawn together with other inputs, row by row of a file, so nothing says what they are \
+             given a value of it: move its law with --centre {path}"
+        )));
+    }
     if study.joint.is_independent() {
         return Ok(value);
     }
     let (lower, upper) = study.inputs[input].marginal.support();
     if value < lower || value > upper {
         return Err(Error::argument(format!(
-            "{} = {value} (SI) lies outside its law, and the card's correlations say of other inputs what \
-             they are given it: sweep inside the law, or move the law with --centre",
-            study.inputs[input].target.path()
+            "{path} = {value} (SI) lies outside its law, and the card's correlations say of other inputs what \
+             they are given it: sweep inside the law, or move the law with --centre {path}"
         )));
     }
     let inside = if (upper - lower).is_finite() { 1e-9 * (upper - lower) } else { 0.0 };

@@ -1,5 +1,6 @@
 //! The command line.
 
+use super::rig_arguments::RigArguments;
 use crate::error::Result;
 use crate::store::PARQUET;
 use crate::study::{Override, Study};
@@ -33,6 +34,10 @@ pub(super) enum Command {
     Sweep(SweepArguments),
     /// Find the cheapest tightenings and design change that meet a target, and confirm them
     Tighten(TightenArguments),
+    /// The horizontal rig: one run, its modes compared as test options, or the best tests planned
+    Rig(Box<RigArguments>),
+    /// Draw the paper's figures again and hold them against what the paper says of them
+    Paper(PaperArguments),
     /// Compute one sample of a run again, and compare it bit for bit
     Replay(ReplayArguments),
     /// Validate a study and show every resolved input with its unit and source
@@ -176,12 +181,28 @@ pub(super) struct TightenArguments {
     /// Largest acceptable probability of any breach, in place of the study's: 0.01 or "1 %"
     #[arg(long, value_name = "P")]
     pub target: Option<String>,
+    /// Let a design value move at no cost, in place of the study's (fluid.nominal_viscosity="90000 cSt..140000 cSt");
+    /// may be given several times; "none" holds every one
+    #[arg(long = "move", value_name = "PATH=LEAST..MOST")]
+    pub moves: Vec<String>,
     /// Directory for tighten.json and tighten.md
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Number of threads [default: one a core]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
+    /// Print the findings as one JSON object in SI, and nothing else, on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct PaperArguments {
+    #[command(flatten)]
+    pub study: StudyArguments,
+    /// Directory for report.md, paper.json and the figures
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Print the findings as one JSON object in SI, and nothing else, on standard output
     #[arg(long)]
     pub json: bool,

@@ -7,8 +7,11 @@ mod descend;
 mod describe;
 mod diagnostics;
 mod output;
+mod paper;
 mod parentage;
 mod replay;
+mod rig;
+mod rig_arguments;
 mod run;
 mod sensitivity_table;
 mod sweep;
@@ -69,6 +72,8 @@ fn carry_out(arguments: Arguments) -> Result<Ending> {
         Some(Command::Compare(compare)) => compare::compare(&compare),
         Some(Command::Sweep(sweep)) => sweep::sweep(&sweep),
         Some(Command::Tighten(tighten)) => tighten::tighten(&tighten),
+        Some(Command::Paper(paper)) => paper::paper(&paper),
+        Some(Command::Rig(rig)) => rig::rig(&rig),
         Some(Command::Replay(replay)) => replay::replay(&replay),
         Some(Command::Check(check)) => check::check(&check),
         Some(Command::Schema { kind }) => describe::schema(kind),

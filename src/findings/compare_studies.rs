@@ -1,7 +1,7 @@
 //! What differs between two studies, in the words in which they are written.
 
 use super::compare::ChangeFinding;
-use crate::study::{StoppingPlan, Study};
+use crate::study::{DrawnTogether, StoppingPlan, Study};
 use crate::uncertainty::Measure;
 use crate::units::number;
 
@@ -56,6 +56,15 @@ pub(super) fn changes(before: &Study, after: &Study) -> Vec<ChangeFinding> {
         (!lines.is_empty()).then(|| lines.join("; "))
     };
     add("correlation", "correlations", correlations(before), correlations(after));
+    let samples = |study: &Study| {
+        let line = |t: &DrawnTogether| {
+            let digest = t.sha256.get(..12).unwrap_or(&t.sha256);
+            format!("{}: {} rows of {} ({digest}…)", t.name, t.rows, t.file)
+        };
+        let lines: Vec<String> = study.drawn_together.iter().map(line).collect();
+        (!lines.is_empty()).then(|| lines.join("; "))
+    };
+    add("law", "inputs drawn together", samples(before), samples(after));
     let mut limits: Vec<String> =
         before.limits.iter().chain(&after.limits).map(|limit| limit.name()).collect();
     limits.sort();

@@ -1,27 +1,35 @@
 //! Everything a report says, computed once, as one tree that serialises: what the Markdown shows, the
 //! JSON holds. Numbers are SI; the renderer chooses units.
 
+pub mod calibrated;
 pub mod compare;
+mod compare_findings;
 mod compare_studies;
 mod demonstration;
 pub mod derivatives;
 pub mod design_value;
 mod drivers;
+pub mod epistemic;
 mod figures;
 mod inputs;
 pub mod known;
 mod margins;
 pub mod measures;
 mod numerical;
+pub mod paper;
 mod probabilities;
 mod rare;
+pub mod rig;
 mod sequence;
 pub mod shapley;
 mod story;
 pub mod sweep;
+pub mod sweep_best;
 pub mod tighten;
 pub mod trade;
 
+use crate::campaign::calibrated::CalibratedOutcomes;
+use crate::campaign::epistemic::EpistemicOutcomes;
 use crate::campaign::given_sample::GivenSample;
 use crate::campaign::known::KnownOutcomes;
 use crate::campaign::screening::{ScreeningOutcomes, Slopes};
@@ -35,8 +43,10 @@ use crate::study::Study;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
+pub use calibrated::{CalibratedEvent, CalibratedFinding, MovedInput};
 pub use demonstration::{Decision, VerdictFinding, VerdictWord};
 pub use drivers::{DriverOutput, DriversFinding, FactorFinding, PairFinding};
+pub use epistemic::{EpistemicEvent, EpistemicFinding, ProbabilityBox, UnknownShare};
 pub use figures::{
     Checkpoint, ConstantTemperature, Convergence, Distribution, Exceedance, Fan, FanBand,
     FigureData, Interaction, InteractionInput, PaperRuns, paper_runs,
@@ -47,7 +57,7 @@ pub use margins::{MarginFinding, MarginQuantile};
 pub use measures::MeasuresFinding;
 pub use numerical::{NumericalFinding, NumericalLimit};
 pub use probabilities::{EventKind, ProbabilityFinding};
-pub use rare::{DesignPointFinding, DesignPointInput, RareFinding};
+pub use rare::{DesignPointFinding, DesignPointInput, RareFinding, rare_findings};
 pub use sequence::StoppingFinding;
 pub use shapley::{ShapleyFinding, ShapleyOutput};
 pub use trade::TradeFinding;
@@ -86,6 +96,10 @@ pub struct Findings {
     pub trade: TradeFinding,
     /// What becomes known when, and what that settles.
     pub known: KnownFinding,
+    /// What a calibration changed, if a card of the study is a calibrated one.
+    pub calibrated: Option<CalibratedFinding>,
+    /// What varies from flight to flight, and what is not known.
+    pub epistemic: EpistemicFinding,
     /// Samples that did not deploy or could not be computed.
     pub exceptions: ExceptionFinding,
     /// What is uncertain.
@@ -206,6 +220,10 @@ pub struct Evidence<'a> {
     pub trade: std::result::Result<TradeOutcomes<'a>, String>,
     /// What becomes known when, or why that is not told.
     pub known: std::result::Result<KnownOutcomes, String>,
+    /// The study under the cards of the prior, if a card of it is a calibrated one.
+    pub calibrated: Option<CalibratedOutcomes>,
+    /// Its nested descents, or why there are none.
+    pub epistemic: std::result::Result<EpistemicOutcomes, String>,
     /// The command that was given, to be given again.
     pub command: String,
 }
@@ -222,13 +240,14 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
     let sampler = campaign::sampler(&drawn)?;
     let drivers = drivers::drivers(study, &evidence.pick_freeze)?;
     let shapley = shapley::shapley(study, &evidence.shapley)?;
+    let epistemic = epistemic::epistemic(study, &evidence.epistemic)?;
     Ok(Findings {
         format: 1,
         title: study.title.clone(),
         verdict: demonstration::verdict(study, record)?,
         stopping: sequence::stopping(study, record.counts().samples(), evidence.stop),
         probabilities: probabilities::probabilities(study, record)?,
-        rare: rare::rare(study, &evidence.rare, evidence.nominal.as_ref().ok()),
+        rare: rare::rare_findings(study, &evidence.rare, evidence.nominal.as_ref().ok()),
         margins: margins::margins(study, record)?,
         outcomes: OutcomeQuantity::ALL.map(|quantity| outcome(record, quantity)).to_vec(),
         nominal: nominal(study, &evidence.nominal),
@@ -245,6 +264,8 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
         shapley,
         trade: trade::trade(study, &evidence.trade)?,
         known: known::known(study, &evidence.known)?,
+        calibrated: calibrated::calibrated(study, evidence.calibrated.as_ref(), &epistemic)?,
+        epistemic,
         exceptions: exceptions(record),
         inputs: inputs::inputs(study),
         numerical: numerical::numerical(study, record, &evidence.verification),

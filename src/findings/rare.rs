@@ -62,7 +62,7 @@ pub struct DesignPointInput {
 }
 
 /// The rare events of a study, told beside its nominal descent.
-pub(super) fn rare(
+pub fn rare_findings(
     study: &Study,
     events: &[RareEvent],
     nominal: Option<&Outcome>,

@@ -14,10 +14,15 @@ struct Section {
     below: Vec<String>,
 }
 
+/// Shares of flights whose margins a terminal shows.
+const SHOWN_SHARES: [f64; 2] = [0.5, 0.99];
+
 /// The comparison for a terminal.
 pub fn compare_terminal(finding: &CompareFinding) -> String {
+    let mut shown = finding.clone();
+    shown.margins.retain(|margin| SHOWN_SHARES.contains(&margin.share));
     let mut text = format!("{}\n", super::terminal::wrapped(&headline(finding)));
-    for section in sections(finding) {
+    for section in sections(&shown) {
         if !section.rows.is_empty() {
             let columns = section.header.len();
             let rows = section.rows.iter().cloned();
@@ -159,7 +164,24 @@ fn change(change: &ChangeFinding) -> Vec<String> {
         _ => change.what.clone(),
     };
     let text = |side: &Option<String>| side.clone().unwrap_or("–".to_owned());
-    vec![what, text(&change.before), text(&change.after)]
+    let (before, after) = match (&change.before, &change.after) {
+        (Some(before), Some(after)) if change.kind == "law" => differing(before, after),
+        (before, after) => (text(before), text(after)),
+    };
+    vec![what, before, after]
+}
+
+/// The parts in which two laws differ, if they are otherwise the same.
+fn differing(before: &str, after: &str) -> (String, String) {
+    let parts = |text: &str| -> Vec<String> { text.split(", ").map(str::to_owned).collect() };
+    let (first, second) = (parts(before), parts(after));
+    if first.len() != second.len() {
+        return (before.to_owned(), after.to_owned());
+    }
+    let apart = || first.iter().zip(&second).filter(|(a, b)| a != b);
+    let join = |parts: Vec<&str>| parts.join(", ");
+    let before = join(apart().map(|(a, _)| a.as_str()).collect());
+    (before, join(apart().map(|(_, b)| b.as_str()).collect()))
 }
 
 fn event(event: &EventChange) -> Vec<String> {

@@ -93,21 +93,26 @@ fn map(map: &GoMap) -> MapTable {
     let cell = |(estimate, answer): &(Estimate, GoAnswer)| {
         format!("{} {}", percent(estimate), words(*answer))
     };
+    // A table has room for so many columns.
+    let step = map.second.len().div_ceil(TABLE_COLUMNS).max(1);
     MapTable {
         title: format!("`{first}` ({}) down, `{second}` ({}) across", unit(first), unit(second)),
         about: about(map),
-        header: map.second.iter().map(|&si| shown(second, si)).collect(),
+        header: map.second.iter().step_by(step).map(|&si| shown(second, si)).collect(),
         rows: map
             .first
             .iter()
             .zip(map.cells.chunks(map.second.len().max(1)))
             .map(|(&si, cells)| TradeRow {
                 name: shown(first, si),
-                cells: cells.iter().map(cell).collect(),
+                cells: cells.iter().step_by(step).map(cell).collect(),
             })
             .collect(),
     }
 }
+
+/// Most columns of a map's table.
+const TABLE_COLUMNS: usize = 11;
 
 fn about(map: &GoMap) -> String {
     let mut about = match (map.allowed, map.confidence) {

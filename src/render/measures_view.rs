@@ -76,6 +76,7 @@ fn ranking(finding: &MeasuresFinding, found: &RankingFinding) -> Ranking {
     });
     let about = format!(
         "Ranks of the factors for {} by every measure. {agreement}{concordance}. In brackets: not told from no effect at all. \
+         S₁ is the first-order index, slope the derivative at the means. \
          The measures reuse the first samples of the run: first order by ranks and regressions {}, Borgonovo's δ and \
          PAWN {}, HSIC {} (permutation test); Morris' screening has {} trajectories of its own. A group stands in by the \
          sum of its members' scores, for Morris, SRRC, PRCC and derivatives by the root of the sum of their squares. \

@@ -1,7 +1,9 @@
 //! Findings as text and figures: a terminal summary, a Markdown and an HTML report, SVG. Returns strings; writes and prints nothing.
 
+mod calibrated_view;
 mod compare;
 mod driver_view;
+mod epistemic_view;
 mod figures;
 mod figures_of_speech;
 mod html;
@@ -9,6 +11,8 @@ mod json;
 mod known_view;
 mod markdown;
 mod measures_view;
+mod paper;
+mod rig;
 mod sketch;
 mod sweep;
 mod tables;
@@ -18,10 +22,14 @@ mod trade_view;
 mod view;
 
 pub use compare::{compare_markdown, compare_terminal};
-pub use figures::{Figure, ReportFigures, figures, paper_figures, sweep_figures};
+pub use figures::{
+    Figure, ReportFigures, figures, paper_figures, rig_figures, rig_mode_figures, sweep_figures,
+};
 pub use html::html;
 pub use json::json;
 pub use markdown::markdown;
+pub use paper::{PaperPage, paper_page};
+pub use rig::{rig_comparison_terminal, rig_plan_terminal};
 pub use sweep::{sweep_markdown, sweep_terminal};
 pub use tables::table;
 pub use terminal::{Style, terminal};

@@ -4,7 +4,8 @@ use super::figures::Figure;
 use super::figures_of_speech::{count, maybe, probability, probability_interval, value};
 use super::tables::table;
 use crate::findings::known::GoAnswer;
-use crate::findings::sweep::{BestFinding, CellFinding, PathFinding, SweepFinding};
+use crate::findings::sweep::{CellFinding, PathFinding, SweepFinding};
+use crate::findings::sweep_best::BestFinding;
 use crate::numerics::interval::Estimate;
 use crate::units::{Quantity, number};
 

@@ -19,7 +19,7 @@ use std::f64::consts::PI;
 /// Terms of the kernel.
 pub const WAVES: usize = 6;
 /// Bootstrap replicates of the coefficient.
-const REPLICATES: usize = 200;
+const REPLICATES: usize = 100;
 /// Products of one row's features: the means of both, all products, and the squares of each.
 const COLUMNS: usize = 1 + 2 * WAVES + 3 * WAVES * WAVES;
 

@@ -12,6 +12,8 @@ mod program;
 mod published;
 mod readers;
 mod replaying;
+mod rig;
 mod sweeping;
+mod tighten;
 mod together;
 mod verdicts;

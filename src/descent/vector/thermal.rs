@@ -87,10 +87,10 @@ impl<V: Lanes> Solution<V> {
     #[inline(always)]
     pub fn solve(&self, r: [V; 4], u_v: V) -> [V; 3] {
         let mut u = [u_v; 3];
-        for i in 0..3 {
+        for (i, value) in u.iter_mut().enumerate() {
             let [first, second, third] = self.own[i];
             let own = third.mul_add(r[3], second.mul_add(r[2], first * r[1]));
-            u[i] = self.by_v[i].mul_add(u_v, self.by_line[i].mul_add(r[0], own));
+            *value = self.by_v[i].mul_add(u_v, self.by_line[i].mul_add(r[0], own));
         }
         u
     }

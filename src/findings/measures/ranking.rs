@@ -11,14 +11,14 @@ use serde::Serialize;
 
 /// The measures that are compared, beside Sobol' total and Shapley: index, and its name in a table.
 const COMPARED: [(&str, &str); 8] = [
-    ("first_order", "first order (ranks)"),
+    ("first_order", "S₁ (ranks)"),
     ("borgonovo_delta", "Borgonovo δ"),
     ("pawn", "PAWN"),
     ("hsic", "HSIC"),
     ("srrc", "SRRC"),
     ("prcc", "PRCC"),
     ("morris_mu_star", "Morris μ*"),
-    ("derivative_times_sd", "derivative × sd"),
+    ("derivative_times_sd", "slope × sd"),
 ];
 
 /// Ranks of the factors by every measure, of the outcome whose limit is breached most often.

@@ -64,6 +64,14 @@ impl Axis {
         format!("{} %", number(100.0 * lowest.unwrap_or(1.0), 3))
     }
 
+    /// What a tick at its right end says.
+    pub fn last_tick(&self) -> String {
+        match self.format() {
+            TickFormat::Custom(write) => write(self.max),
+            _ => String::new(),
+        }
+    }
+
     /// How its ticks are written.
     pub fn format(&self) -> TickFormat {
         match self.scale {

@@ -1,6 +1,7 @@
 //! One panel: axes, marks, labelled limits and a key above, on kuva's scene.
 
 use super::axis::Axis;
+use super::key::{SWATCH, Swatch, key_rows, text_width};
 use super::svg::accessible;
 use kuva::backend::svg::SvgBackend;
 use kuva::prelude::{Layout, Theme};
@@ -30,18 +31,9 @@ const CARD: &str = "#ffffff";
 pub(super) const WIDTH: f64 = 520.0;
 /// Usual height.
 pub(super) const HEIGHT: f64 = 330.0;
-const TICK_SIZE: u32 = 13;
+pub(super) const TICK_SIZE: u32 = 13;
 const LABEL_SIZE: u32 = 14;
 const ROW: f64 = 19.0;
-const SWATCH: f64 = 18.0;
-
-/// How a key's swatch looks.
-#[derive(Debug, Clone)]
-pub(super) enum Swatch {
-    Area(&'static str, f64),
-    Line(&'static str, bool),
-    Dot(&'static str),
-}
 
 /// A panel being drawn.
 pub(super) struct Chart {
@@ -117,10 +109,16 @@ impl Chart {
         let wider = (text_width(&y.widest_decade()) - computed.y_tick_label_px).max(0.0);
         computed.y_tick_label_px += wider;
         computed.margin_left += wider;
+        if !y.label.is_empty() {
+            let beside = computed.y_tick_label_px + 16.0 + 1.5 * f64::from(LABEL_SIZE);
+            computed.margin_left = computed.margin_left.max(beside);
+        }
         let lines = key_rows(&keys, WIDTH - 16.0).len() as f64;
         let header = 6.0 + lines * ROW;
         computed.margin_top = header + if vertical_limits { ROW + 4.0 } else { 6.0 };
-        computed.margin_right = computed.margin_right.max(22.0);
+        // The last tick's label is centred on the axis's end.
+        computed.margin_right =
+            computed.margin_right.max(0.5 * text_width(&x.last_tick()) + 4.0).max(22.0);
         computed.recompute_transforms();
         let mut scene = Scene::new(WIDTH, height);
         scene.background_color = Some(CARD.to_owned());
@@ -400,52 +398,5 @@ impl Chart {
             },
         };
         self.add(primitive);
-    }
-}
-
-/// The width of a label, a little more than it is in the widest of the fonts asked for; kuva's own metrics
-/// are not public.
-fn text_width(text: &str) -> f64 {
-    let em = |c: char| match c {
-        'i' | 'j' | 'l' | 't' | 'f' | 'r' | '.' | ',' | ':' | ' ' | '(' | ')' | '/' => 0.41,
-        'm' | 'w' | 'M' | 'W' | '%' => 0.97,
-        'A'..='Z' => 0.72,
-        _ => 0.64,
-    };
-    f64::from(TICK_SIZE) * text.chars().map(em).sum::<f64>()
-}
-
-/// Keys from left to right, wrapped: for each row, the place and index of its members.
-fn key_rows(keys: &[(Swatch, String)], width: f64) -> Vec<Vec<(f64, usize)>> {
-    let mut rows: Vec<Vec<(f64, usize)>> = Vec::new();
-    let mut x = f64::INFINITY;
-    for (k, (_, label)) in keys.iter().enumerate() {
-        let wide = SWATCH + 6.0 + text_width(label);
-        if x + wide > width {
-            rows.push(Vec::new());
-            x = 0.0;
-        }
-        if let Some(row) = rows.last_mut() {
-            row.push((x, k));
-        }
-        x += wide + 18.0;
-    }
-    rows
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn property_keys_wrap_inside_the_width() {
-        let keys: Vec<_> =
-            (0..7).map(|k| (Swatch::Dot(BLUE), format!("a key, number {k}"))).collect();
-        let rows = key_rows(&keys, 400.0);
-        assert!(rows.len() > 1);
-        assert_eq!(rows.iter().map(Vec::len).sum::<usize>(), keys.len());
-        for (x, k) in rows.into_iter().flatten() {
-            assert!(x + SWATCH + 6.0 + text_width(&keys[k].1) <= 400.0);
-        }
     }
 }

@@ -2,8 +2,9 @@
 
 use super::Figure;
 use super::axis::Axis;
-use super::chart::{Chart, GREEN, INK, ORANGE, Swatch, VERMILLION};
+use super::chart::{Chart, GREEN, INK, ORANGE, VERMILLION};
 use super::contour::Field;
+use super::key::Swatch;
 use crate::findings::known::{GoAnswer, GoMap};
 use crate::numerics::interval::Estimate;
 use crate::numerics::special::normal;
@@ -38,16 +39,16 @@ pub(super) fn figure(map: &GoMap) -> Option<Figure> {
     let x = Axis::linear(label(map.lot, &map.paths.1, across), x0 - wide, x1 + wide);
     let y = Axis::linear(label(false, &map.paths.0, up), y0 - high, y1 + high);
     let answers = [
-        (GoAnswer::Go, "go", GREEN),
-        (GoAnswer::Undecided, "undecided", ORANGE),
-        (GoAnswer::NoGo, "no go", VERMILLION),
-        (GoAnswer::NoRequirement, "no requirement", "#bdbdbd"),
+        (GoAnswer::Go, "go", GREEN, 0.65),
+        (GoAnswer::Undecided, "undecided", ORANGE, 0.4),
+        (GoAnswer::NoGo, "no go", VERMILLION, 0.75),
+        (GoAnswer::NoRequirement, "no requirement", "#bdbdbd", 0.5),
     ];
     let seen = |answer: GoAnswer| map.cells.iter().filter(|(_, a)| *a == answer).count();
     let mut keys: Vec<(Swatch, String)> = answers
         .iter()
         .filter(|(answer, ..)| seen(*answer) > 0)
-        .map(|(_, text, fill)| (Swatch::Area(fill, OPACITY), (*text).to_owned()))
+        .map(|(_, text, fill, opacity)| (Swatch::Area(fill, *opacity), (*text).to_owned()))
         .collect();
     keys.push((Swatch::Line(INK, false), "P(any breach), as labelled".to_owned()));
     let present = map.present.map(|v| display(across).shown(v));
@@ -57,9 +58,11 @@ pub(super) fn figure(map: &GoMap) -> Option<Figure> {
     for (i, &y) in ys.iter().enumerate() {
         for (j, &x) in xs.iter().enumerate() {
             let Some((estimate, answer)) = map.cells.get(i * xs.len() + j) else { continue };
-            let fill = answers.iter().find(|(a, ..)| a == answer).map_or(ORANGE, |(.., fill)| fill);
+            let Some((.., fill, opacity)) = answers.iter().find(|(a, ..)| a == answer) else {
+                continue;
+            };
             let hover = hover((map.first[i], up), (map.second[j], across), estimate);
-            chart.bar((x - wide, y - high), (x + wide, y + high), fill, OPACITY, hover);
+            chart.bar((x - wide, y - high), (x + wide, y + high), fill, *opacity, hover);
         }
     }
     let blank = Field { xs: xs.clone(), ys: ys.clone(), values: Vec::new() };
@@ -108,9 +111,6 @@ pub(super) fn figure(map: &GoMap) -> Option<Figure> {
     let svg = chart.svg(&title, &alternative);
     Some(Figure { name: name.to_owned(), title, caption: shown, alternative, svg })
 }
-
-/// Light enough for the lines and labels on it.
-const OPACITY: f64 = 0.55;
 
 fn hover(first: (f64, Quantity), second: (f64, Quantity), estimate: &Estimate) -> String {
     format!(

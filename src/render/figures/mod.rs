@@ -19,21 +19,26 @@ mod axis;
 mod chart;
 mod contour;
 mod convergence;
+mod curves;
 mod distribution;
 mod drivers;
 mod fan;
 mod go;
 mod go_map;
 mod interaction;
+mod key;
 mod paper;
+mod rig;
 mod svg;
 mod sweep;
 mod sweep_map;
 mod trade;
+mod unknown;
 
 use crate::findings::Findings;
 
-pub use paper::paper_figures;
+pub use paper::{paper_figures, starting_temperature_figure};
+pub use rig::{rig_figures, rig_mode_figures};
 pub use sweep::sweep_figures;
 
 /// One figure.
@@ -71,6 +76,8 @@ pub struct ReportFigures {
     pub trade: Vec<Figure>,
     /// Beside what becomes known when: go or no go.
     pub known: Vec<Figure>,
+    /// Beside what is not known: the belief about P, p-boxes.
+    pub epistemic: Vec<Figure>,
     /// Beside the descents: fans.
     pub descents: Vec<Figure>,
 }
@@ -84,6 +91,7 @@ impl ReportFigures {
             &self.drivers,
             &self.trade,
             &self.known,
+            &self.epistemic,
             &self.descents,
         ];
         sections.into_iter().flatten()
@@ -113,6 +121,7 @@ pub fn figures(findings: &Findings) -> ReportFigures {
             .filter_map(go::figure)
             .chain(findings.known.map.as_ref().and_then(go_map::figure))
             .collect(),
+        epistemic: unknown::figures(&findings.epistemic),
         descents: fan::figures(findings),
     }
 }

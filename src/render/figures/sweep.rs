@@ -2,7 +2,8 @@
 
 use super::Figure;
 use super::axis::Axis;
-use super::chart::{BLUE, Chart, HEIGHT, INK, PALETTE, Swatch};
+use super::chart::{BLUE, Chart, HEIGHT, INK, PALETTE};
+use super::key::Swatch;
 use super::sweep_map;
 use crate::findings::CONFIDENCE;
 use crate::findings::sweep::{CourseFinding, LimitFinding, PathFinding, SweepFinding};

@@ -2,11 +2,13 @@
 
 use super::Figure;
 use super::axis::Axis;
-use super::chart::{BLUE, Chart, GREEN, INK, Swatch};
+use super::chart::{BLUE, Chart, GREEN, INK};
 use super::contour::{Field, Point};
+use super::key::Swatch;
 use super::sweep::path_label;
 use crate::findings::known::GoAnswer;
-use crate::findings::sweep::{BestFinding, PathFinding, SweepFinding};
+use crate::findings::sweep::{PathFinding, SweepFinding};
+use crate::findings::sweep_best::BestFinding;
 use crate::numerics::special::normal;
 use crate::render::figures_of_speech::{count, probability, value};
 use crate::units::display;
