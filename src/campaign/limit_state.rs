@@ -1,6 +1,7 @@
 //! Descents as a limit state: what the reliability methods see of them.
 
 use super::{Ensemble, Progress};
+use crate::descent::{Fault, Outcome};
 use crate::error::Result;
 use crate::numerics::columns::Columns;
 use crate::reliability::limit_state::LimitState;
@@ -23,6 +24,14 @@ impl<'a> DescentLimitState<'a> {
     /// The inputs (SI) at a standard-normal point.
     pub fn draw(&self, point: &[f64]) -> Vec<f64> {
         self.ensemble.draw(point)
+    }
+
+    /// The descent at a standard-normal point.
+    ///
+    /// # Errors
+    /// The fault of that descent.
+    pub fn flight(&self, point: &[f64]) -> std::result::Result<Outcome, Fault> {
+        self.ensemble.at_standard_normal(&Columns::from_rows(&[point]), self.progress).result(0)
     }
 }
 

@@ -37,7 +37,7 @@ pub use evaluate::{Ensemble, nominal};
 pub use limit_state::DescentLimitState;
 pub use looks::{Looks, RowGroups};
 pub use pick_freeze::{CORRELATED, PickFreezeOutcomes, factors, run_pick_freeze};
-pub use rare::{FEW_BREACHES, RareEvent, rare_events};
+pub use rare::{FEW_BREACHES, MostLikelyBreach, RareEvent, rare_events};
 pub use record::{FaultedSample, OutcomeSummary, Record};
 pub use verification::{NEAR, NearLimit, Verification, verify};
 

@@ -1,8 +1,10 @@
 //! Probabilities that the samples alone cannot show: the reliability methods on a study's descents.
 
 use super::{DescentLimitState, Progress, Record};
+use crate::descent::{Fault, Outcome};
 use crate::error::Result;
 use crate::reliability::agreement::{Agreement, agreement};
+use crate::reliability::breach_counts::BreachCounts;
 use crate::reliability::confidence_sequence::confidence_sequence;
 use crate::reliability::cross_entropy::{CrossEntropyOptions, cross_entropy};
 use crate::reliability::crude;
@@ -14,6 +16,7 @@ use crate::reliability::form::form;
 use crate::reliability::importance::{ImportanceOptions, importance_sampling};
 use crate::reliability::limit_state::LimitState;
 use crate::reliability::line::{LineOptions, line_sampling};
+use crate::reliability::probability::Proportion;
 use crate::reliability::sorm::{SormOptions, sorm};
 use crate::reliability::subset::{SubsetOptions, subset_simulation};
 use crate::reliability::system::system_form;
@@ -36,12 +39,23 @@ pub struct RareEvent {
     pub estimates: Vec<Estimate>,
     /// Whether they agree within their errors.
     pub agreement: Agreement,
-    /// The most likely way to breach, if one was found, with the draw in SI at it.
-    pub design_point: Option<(DesignPoint, Vec<f64>)>,
+    /// The most likely way to breach, if one was found.
+    pub most_likely: Option<MostLikelyBreach>,
 }
 
-/// Asks the reliability methods about every event that the samples saw too rarely or, if the study names
-/// methods, about every limit and any of them. Stops early, with what there is, if `progress` says so.
+/// The design point of an event as a flight.
+#[derive(Debug, Clone)]
+pub struct MostLikelyBreach {
+    /// The point nearest to the medians that breaches.
+    pub point: DesignPoint,
+    /// The inputs there, SI.
+    pub draw: Vec<f64>,
+    /// The descent there.
+    pub flight: std::result::Result<Outcome, Fault>,
+}
+
+/// Asks the reliability methods about every limit, and any of them, that the samples saw too rarely or, if the
+/// study names methods, about every limit, all pairs of limits and any of them. Stops early, with what there is, if `progress` says so.
 ///
 /// # Errors
 /// If a method refuses its options.
@@ -54,12 +68,10 @@ pub fn rare_events(study: &Study, record: &Record, progress: &Progress) -> Resul
         None => DEFAULT_METHODS.to_vec(),
     };
     let each = (0..limits).map(Event::Limit);
-    let events = each.chain((limits > 1).then_some(Event::Any)).filter(|event| {
-        let seen = match event {
-            Event::Limit(i) => counts.constraint(*i),
-            _ => Some(counts.any()),
-        };
-        chosen.is_some() || seen.is_some_and(|seen| seen.breaches < FEW_BREACHES)
+    let pairs = (0..limits).flat_map(|i| (i + 1..limits).map(move |j| Event::Both(i, j)));
+    let pairs = pairs.filter(|_| chosen.is_some());
+    let events = each.chain(pairs).chain((limits > 1).then_some(Event::Any)).filter(|&event| {
+        chosen.is_some() || seen(counts, event).is_some_and(|seen| seen.breaches < FEW_BREACHES)
     });
     let state = DescentLimitState::new(study, progress);
     let mut found = Vec::new();
@@ -86,6 +98,16 @@ fn needs_slopes(method: &str) -> Option<Method> {
 const STEPS: &str = "inputs are drawn from the rows of a joint sample: the margins are step functions of the \
     coordinate that picks the row, without the slopes that this method goes by";
 
+/// What the samples saw of an event.
+fn seen(counts: &BreachCounts, event: Event) -> Option<Proportion> {
+    match event {
+        Event::Limit(i) => counts.constraint(i),
+        Event::Both(i, j) => counts.pair(i, j),
+        Event::Any => Some(counts.any()),
+        Event::All => None,
+    }
+}
+
 fn rare_event(
     study: &Study,
     record: &Record,
@@ -98,12 +120,8 @@ fn rare_event(
     let mut estimates = Vec::new();
     let mut points: Option<DesignPoints> = None;
     if study.sampling.design == Design::MonteCarlo {
-        let seen = match event {
-            Event::Limit(i) => record.counts().constraint(i),
-            _ => Some(record.counts().any()),
-        };
         let confidence = ImportanceOptions::default().confidence;
-        if let Some(seen) = seen {
+        if let Some(seen) = seen(record.counts(), event) {
             let mut crude = crude::from_counts(event, seen, confidence)?;
             if study.sampling.stopping.is_some() {
                 // How many samples there are depends on what they show.
@@ -136,7 +154,7 @@ fn rare_event(
                 _ => estimates.push(Estimate::without_number(
                     Method::SormBreitung,
                     event,
-                    "SORM has no formula for a union of limits",
+                    "SORM has no formula for several limits",
                 )),
             },
             "importance-sampling" => {
@@ -171,11 +189,12 @@ fn rare_event(
         }
     }
     let nearest = points.as_ref().and_then(|found| found.points.first()).cloned();
-    let design_point = nearest.map(|point| {
-        let draw = state.draw(&point.point);
-        (point, draw)
+    let most_likely = nearest.map(|point| MostLikelyBreach {
+        draw: state.draw(&point.point),
+        flight: state.flight(&point.point),
+        point,
     });
     let agreement = agreement(&estimates, FAMILY_RISK)?;
     debug_assert_eq!(state.limits(), study.limits.len());
-    Ok(RareEvent { event, estimates, agreement, design_point })
+    Ok(RareEvent { event, estimates, agreement, most_likely })
 }

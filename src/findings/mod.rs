@@ -22,6 +22,7 @@ mod rare;
 pub mod rig;
 mod sequence;
 pub mod shapley;
+mod story;
 pub mod sweep;
 pub mod sweep_best;
 pub mod tighten;
@@ -56,7 +57,7 @@ pub use margins::{MarginFinding, MarginQuantile};
 pub use measures::MeasuresFinding;
 pub use numerical::{NumericalFinding, NumericalLimit};
 pub use probabilities::{EventKind, ProbabilityFinding};
-pub use rare::{DesignPointFinding, DesignPointInput, RareFinding};
+pub use rare::{DesignPointFinding, DesignPointInput, RareFinding, rare_findings};
 pub use sequence::StoppingFinding;
 pub use shapley::{ShapleyFinding, ShapleyOutput};
 pub use trade::TradeFinding;
@@ -246,7 +247,7 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
         verdict: demonstration::verdict(study, record)?,
         stopping: sequence::stopping(study, record.counts().samples(), evidence.stop),
         probabilities: probabilities::probabilities(study, record)?,
-        rare: rare::rare(study, &evidence.rare),
+        rare: rare::rare_findings(study, &evidence.rare, evidence.nominal.as_ref().ok()),
         margins: margins::margins(study, record)?,
         outcomes: OutcomeQuantity::ALL.map(|quantity| outcome(record, quantity)).to_vec(),
         nominal: nominal(study, &evidence.nominal),

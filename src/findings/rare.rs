@@ -1,17 +1,15 @@
 //! Rare breaches: what several methods say, whether they agree, and the most likely way to fail.
 
-use super::demonstration::percent;
-use crate::campaign::{FEW_BREACHES, RareEvent};
+use super::story::story;
+use crate::campaign::{FEW_BREACHES, MostLikelyBreach, RareEvent};
+use crate::descent::{Outcome, OutcomeQuantity};
 use crate::numerics::special::normal;
 use crate::reliability::agreement::Agreement;
 use crate::reliability::estimate::{Estimate, Method};
 use crate::reliability::event::Event;
 use crate::study::{LimitKind, Study};
-use crate::units::engineering;
 use serde::Serialize;
-
-/// Inputs named in the story of a design point.
-const TOLD: usize = 5;
+use std::collections::BTreeMap;
 
 /// One rare event.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -22,6 +20,8 @@ pub struct RareFinding {
     pub title: String,
     /// One estimate a method, the samples' own first.
     pub estimates: Vec<Estimate>,
+    /// Which of them have no interval, and why, in sentences.
+    pub without_interval: Vec<String>,
     /// Whether they agree.
     pub agreement: Agreement,
     /// The agreement in words.
@@ -37,6 +37,8 @@ pub struct DesignPointFinding {
     pub reliability_index: f64,
     /// Every input at the point, the most important first.
     pub inputs: Vec<DesignPointInput>,
+    /// Outcomes of the flight at the point by column name, SI; empty if it could not be computed.
+    pub flight: BTreeMap<String, f64>,
     /// The point in words.
     pub statement: String,
 }
@@ -52,57 +54,94 @@ pub struct DesignPointInput {
     pub median: f64,
     /// Probability of a value below it: below ½ the input is low, above it is high.
     pub percentile: f64,
+    /// Probability of a value as far or farther out on its side.
+    pub beyond: f64,
     /// Importance factor α²: its share of the point's distance; of inputs drawn together the first has
     /// the share of all.
     pub importance: f64,
 }
 
-/// The rare events of a study.
-pub(super) fn rare(study: &Study, events: &[RareEvent]) -> Vec<RareFinding> {
-    events.iter().map(|event| finding(study, event)).collect()
+/// The rare events of a study, told beside its nominal descent.
+pub fn rare_findings(
+    study: &Study,
+    events: &[RareEvent],
+    nominal: Option<&Outcome>,
+) -> Vec<RareFinding> {
+    events.iter().map(|event| finding(study, event, nominal)).collect()
 }
 
-fn finding(study: &Study, rare: &RareEvent) -> RareFinding {
+fn finding(study: &Study, rare: &RareEvent, nominal: Option<&Outcome>) -> RareFinding {
     let members: Vec<usize> = match rare.event {
         Event::Limit(i) => vec![i],
         Event::Both(i, j) => vec![i, j],
         Event::Any | Event::All => (0..study.limits.len()).collect(),
     };
-    let title = match (rare.event, members.first().and_then(|&i| study.limits.get(i))) {
-        (Event::Limit(_), Some(limit)) => {
-            let side = if limit.kind == LimitKind::Max { "above" } else { "below" };
-            format!("{} {side} {}", limit.outcome.title(), limit.text)
-        }
-        (Event::Any, _) => "any limit".to_owned(),
-        _ => "several limits together".to_owned(),
+    let of_limit = |&i: &usize| {
+        let limit = study.limits.get(i)?;
+        let side = if limit.kind == LimitKind::Max { "above" } else { "below" };
+        Some(format!("{} {side} {}", limit.outcome.title(), limit.text))
+    };
+    let title = match rare.event {
+        Event::Any => "any limit".to_owned(),
+        _ => members.iter().filter_map(of_limit).collect::<Vec<String>>().join(" and "),
     };
     RareFinding {
         limits: members.iter().filter_map(|&i| Some(study.limits.get(i)?.name())).collect(),
         title,
+        without_interval: without_interval(&rare.estimates),
         estimates: rare.estimates.clone(),
         agreement_statement: agreement_statement(&rare.agreement),
         agreement: rare.agreement.clone(),
-        design_point: rare.design_point.as_ref().map(|(point, draw)| {
-            let mut inputs: Vec<DesignPointInput> = study
-                .inputs
-                .iter()
-                .enumerate()
-                .map(|(k, input)| DesignPointInput {
-                    path: input.target.path(),
-                    value: draw[k],
-                    median: input.marginal.median(),
-                    percentile: match study.joint.sample_of(k) {
-                        Some(_) => input.marginal.cdf(draw[k]),
-                        None => normal::cdf(point.point[k]),
-                    },
-                    importance: point.importance[k],
-                })
-                .collect();
-            inputs.sort_by(|a, b| b.importance.total_cmp(&a.importance));
-            let statement = story(study, &inputs, point.reliability_index);
-            DesignPointFinding { reliability_index: point.reliability_index, inputs, statement }
-        }),
+        design_point: rare.most_likely.as_ref().map(|breach| design_point(study, breach, nominal)),
     }
+}
+
+fn design_point(
+    study: &Study,
+    breach: &MostLikelyBreach,
+    nominal: Option<&Outcome>,
+) -> DesignPointFinding {
+    let MostLikelyBreach { point, draw, flight } = breach;
+    let mut inputs: Vec<DesignPointInput> = study
+        .inputs
+        .iter()
+        .enumerate()
+        .map(|(k, input)| DesignPointInput {
+            path: input.target.path(),
+            value: draw[k],
+            median: input.marginal.median(),
+            percentile: normal::cdf(point.point[k]),
+            beyond: normal::survival(point.point[k].abs()),
+            importance: point.importance[k],
+        })
+        .collect();
+    inputs.sort_by(|a, b| b.importance.total_cmp(&a.importance));
+    let flight = flight.as_ref().ok();
+    let outcomes = flight.map(|outcome| {
+        OutcomeQuantity::ALL.into_iter().map(|of| (of.column(), outcome.get(of))).collect()
+    });
+    DesignPointFinding {
+        reliability_index: point.reliability_index,
+        statement: story(study, &inputs, point.reliability_index, flight, nominal),
+        flight: outcomes.unwrap_or_default(),
+        inputs,
+    }
+}
+
+/// One sentence a reason, in the order of the estimates.
+fn without_interval(estimates: &[Estimate]) -> Vec<String> {
+    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
+    for estimate in estimates {
+        let Some(why) = estimate.interval.why_none() else { continue };
+        match reasons.iter_mut().find(|(known, _)| *known == why) {
+            Some((_, methods)) => methods.push(estimate.method.name()),
+            None => reasons.push((why, vec![estimate.method.name()])),
+        }
+    }
+    let sentence = |(why, methods): (&str, Vec<&str>)| {
+        format!("No interval from {}: {why}.", methods.join(", "))
+    };
+    reasons.into_iter().map(sentence).collect()
 }
 
 fn agreement_statement(agreement: &Agreement) -> String {
@@ -127,39 +166,4 @@ fn agreement_statement(agreement: &Agreement) -> String {
              fewer than two methods with an interval)."
         ),
     }
-}
-
-fn story(study: &Study, inputs: &[DesignPointInput], distance: f64) -> String {
-    let parts: Vec<String> = inputs
-        .iter()
-        .take(TOLD)
-        .filter(|input| input.importance >= 0.02)
-        .map(|input| {
-            let quantity = study
-                .inputs
-                .iter()
-                .find(|known| known.target.path() == input.path)
-                .map(|known| known.target.parameter.info().quantity);
-            let shown = quantity.map_or(input.value.to_string(), |q| engineering(input.value, q));
-            let side = if input.percentile < 0.5 { "low" } else { "high" };
-            let together = study.drawn_together.iter().find(|together| {
-                together
-                    .inputs
-                    .first()
-                    .is_some_and(|&j| study.inputs[j].target.path() == input.path)
-            });
-            let others = together.map_or(String::new(), |together| {
-                format!(" with the rest of its row of the {}", together.name)
-            });
-            format!(
-                "{} {side} at {shown}{others} ({} of the distance)",
-                input.path,
-                percent(input.importance)
-            )
-        })
-        .collect();
-    format!(
-        "The most likely way to breach lies {distance:.2} standard deviations from the medians: {}.",
-        parts.join("; ")
-    )
 }

@@ -13,10 +13,12 @@ pub const LEAST: usize = 5;
 ///
 /// Estimates of rare probabilities are products of noisy factors, so near to lognormal: with mean m and
 /// variance s² of the n logarithms, the interval of the mean is
-/// `exp(m + s²/2 ± t √(s²/n + s⁴/(2(n − 1))))`. Student's t has n − 3 degrees of freedom, two fewer than
-/// for normal logarithms: subset simulation's are skewed, and with n − 1 its intervals were measured to
-/// hold the truth in 93.5 % of runs for 95 %. A replicate of zero withdraws the interval: the logarithm
-/// has no say then.
+/// `exp(m + s²/2 ± t √(s²/n + s⁴/(2(n − 1))))`. Of subset simulation's replicates this was measured, apart
+/// from the seeds that the coverage certificate uses: over 17 published problems and 10 200 replicates their
+/// logarithms have skewness −0.04 ± 0.02 and excess kurtosis −0.05 ± 0.05, so n − 1 degrees of freedom would
+/// be right for the mean logarithm. Student's t takes two fewer, on the safe side: the centre's s²/2 rests on
+/// the same few replicates as the width, which Cox's formula neglects. A replicate of zero withdraws the
+/// interval: the logarithm has no say then.
 ///
 /// Source: Cox's method (Land, Technometrics 14 (1972) 145; Olsson, J. Stat. Educ. 13 (2005), with
 /// Student's t in place of the normal quantile).

@@ -29,6 +29,27 @@ pub struct Component {
     ln_norm: f64,
 }
 
+/// A point by its direction and its distance from the origin, of which densities need the logarithm and
+/// the square.
+#[derive(Clone)]
+struct Polar {
+    direction: Vec<f64>,
+    ln_radius: f64,
+    square: f64,
+}
+
+impl Polar {
+    fn of(point: &[f64]) -> Self {
+        let square = dot(point, point);
+        let radius = square.sqrt();
+        let direction = point.iter().map(|x| x / radius).collect();
+        Polar { direction, ln_radius: ln(radius), square }
+    }
+}
+
+/// Points that most rounds of a fit are content with.
+const COARSE: usize = 1000;
+
 /// Largest mean resultant length that a fit may claim, lest a lucky cluster close off its surroundings.
 const MOST_RESULTANT: f64 = 0.995;
 
@@ -45,13 +66,12 @@ impl Component {
         Component { share, mean, concentration, shape, spread, ln_norm }
     }
 
-    /// Logarithm of the density at a point of length `radius`.
-    fn ln_density(&self, point: &[f64], radius: f64) -> f64 {
-        let n = point.len() as f64;
+    /// Logarithm of the density at a point.
+    fn ln_density(&self, at: &Polar) -> f64 {
         self.ln_norm
-            + self.concentration * dot(&self.mean, point) / radius
-            + (2.0 * self.shape - n) * ln(radius)
-            - self.shape * radius * radius / self.spread
+            + self.concentration * dot(&self.mean, &at.direction)
+            + (2.0 * self.shape - self.mean.len() as f64) * at.ln_radius
+            - self.shape / self.spread * at.square
     }
 
     fn draw(&self, stream: &mut Stream) -> Vec<f64> {
@@ -115,16 +135,12 @@ pub struct Mixture {
 impl Mixture {
     /// Logarithm of the density; −∞ at the origin, which is never drawn.
     pub fn ln_density(&self, point: &[f64]) -> f64 {
-        let radius = norm(point);
-        if radius <= 0.0 {
+        if norm(point) <= 0.0 {
             return f64::NEG_INFINITY;
         }
-        let terms: Vec<f64> = self
-            .components
-            .iter()
-            .map(|component| ln(component.share) + component.ln_density(point, radius))
-            .collect();
-        ln_sum(&terms)
+        let at = Polar::of(point);
+        let terms = self.components.iter().map(|c| ln(c.share) + c.ln_density(&at));
+        ln_sum(&terms.collect::<Vec<f64>>())
     }
 
     /// A point.
@@ -154,12 +170,15 @@ impl Mixture {
         Mixture { components: wider.collect() }
     }
 
-    /// Several mixtures side by side, in equal shares.
-    pub fn side_by_side(mixtures: &[Mixture]) -> Mixture {
-        let share = 1.0 / mixtures.len() as f64;
-        let all = mixtures.iter().flat_map(|mixture| mixture.components.iter().cloned());
-        let components =
-            all.map(|component| Component { share: component.share * share, ..component });
+    /// Several mixtures side by side, each with its share.
+    pub fn side_by_side(mixtures: &[(Mixture, f64)]) -> Mixture {
+        let scaled = |component: &Component, share: f64| Component {
+            share: component.share * share,
+            ..component.clone()
+        };
+        let components = mixtures.iter().flat_map(|(mixture, share)| {
+            mixture.components.iter().map(move |component| scaled(component, *share))
+        });
         Mixture { components: components.collect() }
     }
 
@@ -170,34 +189,28 @@ impl Mixture {
         if !(total > 0.0 && total.is_finite()) {
             return None;
         }
-        let kept: Vec<usize> = (0..points.len())
-            .filter(|&i| weights[i] > 1e-12 * total && norm(&points[i]) > 0.0)
-            .collect();
+        // What is left out carries less than a ten-thousandth of the weight, and most of the time.
+        let least = 1e-4 * total / weights.len() as f64;
+        let kept: Vec<usize> =
+            (0..points.len()).filter(|&i| weights[i] > least && norm(&points[i]) > 0.0).collect();
         let weights: Vec<f64> = kept.iter().map(|&i| weights[i] / total).collect();
-        let points: Vec<&Vec<f64>> = kept.iter().map(|&i| &points[i]).collect();
-        let units: Vec<Vec<f64>> = points.iter().map(|point| unit(point)).collect();
-        let mut owners = first_owners(&units, &weights, components);
-        let n = points.first().map_or(0, |point| point.len());
-        let mut fitted: Vec<Component> = Vec::new();
-        let mut likelihood = f64::NEG_INFINITY;
-        for _ in 0..40 {
-            fitted = owners
-                .iter()
-                .filter(|owned| effective(&weights, owned) >= (n as f64).max(20.0))
-                .filter_map(|owned| maximise(&points, &units, &weights, owned))
-                .collect();
-            if fitted.len() < 2 {
-                break;
-            }
-            let (next, gained) = expect(&fitted, &points, &weights);
-            owners = next;
-            if gained - likelihood < 1e-3 {
-                break;
-            }
-            likelihood = gained;
+        let n = points.first().map_or(0, Vec::len);
+        let points: Vec<Polar> = kept.iter().map(|&i| Polar::of(&points[i])).collect();
+        // Most of the way on every so many points, the rest on all of them.
+        let stride = (points.len() / COARSE).max(1);
+        let every = || (0..points.len()).step_by(stride);
+        let weight: f64 = every().map(|i| weights[i]).sum();
+        let coarse: Vec<Polar> = every().map(|i| points[i].clone()).collect();
+        let coarse_weights: Vec<f64> = every().map(|i| weights[i] / weight).collect();
+        let owners = first_owners(&coarse, &coarse_weights, components);
+        let least = (n as f64).max(20.0);
+        let mut fitted = improved(&coarse, &coarse_weights, owners, least / stride as f64, 20);
+        if stride > 1 && !fitted.is_empty() {
+            let (owners, _) = expect(&fitted, &points, &weights);
+            fitted = improved(&points, &weights, owners, least, 5);
         }
         if fitted.is_empty() {
-            fitted.extend(maximise(&points, &units, &weights, &vec![1.0; points.len()]));
+            fitted.extend(maximise(&points, &weights, &vec![1.0; points.len()]));
         }
         let shares: f64 = fitted.iter().map(|component| component.share).sum();
         fitted.iter_mut().for_each(|component| component.share /= shares);
@@ -205,9 +218,34 @@ impl Mixture {
     }
 }
 
-fn unit(point: &[f64]) -> Vec<f64> {
-    let length = norm(point);
-    point.iter().map(|x| x / length).collect()
+/// At most `rounds` of expectation and maximisation, from first owners; components that effectively own
+/// fewer than `least` points are dropped.
+fn improved(
+    points: &[Polar],
+    weights: &[f64],
+    mut owners: Vec<Vec<f64>>,
+    least: f64,
+    rounds: usize,
+) -> Vec<Component> {
+    let mut fitted: Vec<Component> = Vec::new();
+    let mut likelihood = f64::NEG_INFINITY;
+    for _ in 0..rounds {
+        fitted = owners
+            .iter()
+            .filter(|owned| effective(weights, owned) >= least)
+            .filter_map(|owned| maximise(points, weights, owned))
+            .collect();
+        if fitted.len() < 2 {
+            break;
+        }
+        let (next, gained) = expect(&fitted, points, weights);
+        owners = next;
+        if gained - likelihood < 1e-3 {
+            break;
+        }
+        likelihood = gained;
+    }
+    fitted
 }
 
 fn ln_sum(terms: &[f64]) -> f64 {
@@ -220,12 +258,12 @@ fn ln_sum(terms: &[f64]) -> f64 {
 
 /// Points to the nearest of a few centres: the heaviest, then again and again the one whose weight times
 /// distance (1 − cosine) from all before is largest.
-fn first_owners(units: &[Vec<f64>], weights: &[f64], components: usize) -> Vec<Vec<f64>> {
+fn first_owners(points: &[Polar], weights: &[f64], components: usize) -> Vec<Vec<f64>> {
     let mut centres: Vec<usize> = Vec::new();
-    let mut distance = vec![1.0_f64; units.len()];
-    while centres.len() < components.max(1).min(units.len()) {
+    let mut distance = vec![1.0_f64; points.len()];
+    while centres.len() < components.max(1).min(points.len()) {
         let mut best = 0;
-        for i in 1..units.len() {
+        for i in 1..points.len() {
             if weights[i] * distance[i] > weights[best] * distance[best] {
                 best = i;
             }
@@ -233,17 +271,18 @@ fn first_owners(units: &[Vec<f64>], weights: &[f64], components: usize) -> Vec<V
         if centres.contains(&best) {
             break;
         }
-        for (i, unit) in units.iter().enumerate() {
-            let apart = (1.0 - dot(unit, &units[best])).max(0.0);
+        for (i, point) in points.iter().enumerate() {
+            let apart = (1.0 - dot(&point.direction, &points[best].direction)).max(0.0);
             distance[i] = if centres.is_empty() { apart } else { distance[i].min(apart) };
         }
         centres.push(best);
     }
-    let mut owners = vec![vec![0.0; units.len()]; centres.len()];
-    for (i, unit) in units.iter().enumerate() {
+    let mut owners = vec![vec![0.0; points.len()]; centres.len()];
+    for (i, point) in points.iter().enumerate() {
+        let along = |centre: usize| dot(&point.direction, &points[centre].direction);
         let mut nearest = 0;
         for k in 1..centres.len() {
-            if dot(unit, &units[centres[k]]) > dot(unit, &units[centres[nearest]]) {
+            if along(centres[k]) > along(centres[nearest]) {
                 nearest = k;
             }
         }
@@ -253,20 +292,22 @@ fn first_owners(units: &[Vec<f64>], weights: &[f64], components: usize) -> Vec<V
 }
 
 /// Responsibilities of the components for the points, and the mean logarithm of the mixture.
-fn expect(fitted: &[Component], points: &[&Vec<f64>], weights: &[f64]) -> (Vec<Vec<f64>>, f64) {
+fn expect(fitted: &[Component], points: &[Polar], weights: &[f64]) -> (Vec<Vec<f64>>, f64) {
     let mut likelihood = 0.0;
     let mut owners = vec![vec![0.0; points.len()]; fitted.len()];
+    let ln_shares: Vec<f64> = fitted.iter().map(|component| ln(component.share)).collect();
+    let mut terms = vec![0.0; fitted.len()];
     for (i, point) in points.iter().enumerate() {
-        let radius = norm(point);
-        let terms: Vec<f64> = fitted
-            .iter()
-            .map(|component| ln(component.share) + component.ln_density(point, radius))
-            .collect();
-        let sum = ln_sum(&terms);
-        for (owner, term) in owners.iter_mut().zip(&terms) {
-            owner[i] = exp(term - sum);
+        for ((term, component), ln_share) in terms.iter_mut().zip(fitted).zip(&ln_shares) {
+            *term = ln_share + component.ln_density(point);
         }
-        likelihood += weights[i] * sum;
+        let most = terms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        terms.iter_mut().for_each(|term| *term = exp(*term - most));
+        let sum: f64 = terms.iter().sum();
+        for (owner, term) in owners.iter_mut().zip(&terms) {
+            owner[i] = term / sum;
+        }
+        likelihood += weights[i] * (most + ln(sum));
     }
     (owners, likelihood)
 }
@@ -280,22 +321,16 @@ fn effective(weights: &[f64], owned: &[f64]) -> f64 {
 }
 
 /// The component that fits its points best; none if it owns next to nothing.
-fn maximise(
-    points: &[&Vec<f64>],
-    units: &[Vec<f64>],
-    weights: &[f64],
-    owned: &[f64],
-) -> Option<Component> {
-    let n = points.first()?.len();
+fn maximise(points: &[Polar], weights: &[f64], owned: &[f64]) -> Option<Component> {
+    let n = points.first()?.direction.len();
     let (mut share, mut second, mut fourth) = (0.0, 0.0, 0.0);
     let mut resultant = vec![0.0; n];
     for (i, point) in points.iter().enumerate() {
         let weight = weights[i] * owned[i];
-        let square = dot(point, point);
         share += weight;
-        second += weight * square;
-        fourth += weight * square * square;
-        resultant.iter_mut().zip(&units[i]).for_each(|(r, u)| *r += weight * u);
+        second += weight * point.square;
+        fourth += weight * point.square * point.square;
+        resultant.iter_mut().zip(&point.direction).for_each(|(r, u)| *r += weight * u);
     }
     let length = norm(&resultant);
     if share < 1e-3 || length <= 1e-12 * share {
@@ -327,7 +362,7 @@ mod tests {
             let component = Component::new(1.0, mean, 0.0, 0.5 * n as f64, n as f64);
             let point: Vec<f64> = (0..n).map(|j| 0.1 * j as f64 - 1.3).collect();
             let exact = -0.5 * dot(&point, &point) - 0.5 * n as f64 * ln(2.0 * PI);
-            let found = component.ln_density(&point, norm(&point));
+            let found = component.ln_density(&Polar::of(&point));
             // Both sides are sums of a few numbers of size n ln n: a hundred roundings of the largest.
             assert!((found - exact).abs() < 1e-12 * exact.abs().max(10.0), "{n}: {found} {exact}");
         }

@@ -75,6 +75,8 @@ pub(super) struct Rare {
     pub rows: Vec<RareRow>,
     /// Which of the rows has the smallest error.
     pub sharpest: Option<usize>,
+    /// Which methods have no interval, and why; empty if all have one.
+    pub without_interval: String,
     pub agreement: String,
     pub story: Option<String>,
 }
@@ -310,6 +312,7 @@ fn rare(finding: &RareFinding) -> Rare {
             .filter_map(|(k, estimate)| Some((k, estimate.relative_standard_error()?)))
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .map(|(k, _)| k),
+        without_interval: finding.without_interval.join(" "),
         agreement: finding.agreement_statement.clone(),
         story: finding.design_point.as_ref().map(|point| point.statement.clone()),
     }

@@ -3,9 +3,11 @@
 mod benchmarks;
 mod breach_probability;
 mod driven_runs;
+mod first_order;
 mod paper_statements;
 mod reference_descents;
 mod reliability_methods;
+mod system_events;
 mod vector_descents;
 mod vector_elementary;
 mod vector_gradients;

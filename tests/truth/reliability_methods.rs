@@ -1,6 +1,6 @@
 //! Reliability methods against published problems with certified probabilities.
 
-use super::benchmarks::coverage::{CSV_HEADER, Coverage, METHODS, answer};
+use super::benchmarks::coverage::{CSV_HEADER, Coverage, METHODS, Trial, answer};
 use super::benchmarks::{self, Benchmark, Function};
 use reeldown::error::Result;
 use reeldown::numerics::columns::Columns;
@@ -16,7 +16,6 @@ use reeldown::reliability::form::form;
 use reeldown::reliability::importance::{ImportanceOptions, importance_sampling};
 use reeldown::reliability::limit_state::LimitState;
 use reeldown::reliability::line::{LineOptions, line_sampling};
-use reeldown::reliability::sorm::{SormOptions, sorm};
 use reeldown::reliability::subset::{SubsetOptions, subset_simulation};
 use reeldown::reliability::system::system_form;
 
@@ -122,57 +121,6 @@ fn property_an_unconverged_search_reports_no_number() {
 }
 
 #[test]
-fn analytic_sorm_of_a_parabola() {
-    // RP22 and the branch of FOURBRANCH are 2.5 − s + 0.2 t² and 3 − s + 0.2 t²: κ = 0.4, exact under
-    // second differences. Formulas by hand; 1e-6 is the rounding of differences with a step of 0.05.
-    let benchmark = named("RP22");
-    let (second, _) = sorm(&benchmark.limits, 0, &SormOptions::default()).unwrap();
-    assert!((second.curvatures[0] - 0.4).abs() < 1e-6);
-    let tail = normal::survival(2.5);
-    let breitung = tail / (1.0 + 2.5 * 0.4_f64).sqrt();
-    let factor = normal::density(2.5) / tail;
-    let refined = tail / (1.0 + factor * 0.4).sqrt();
-    assert!((second.breitung.probability.unwrap() / breitung - 1.0).abs() < 1e-6);
-    assert!((second.hohenbichler_rackwitz.probability.unwrap() / refined - 1.0).abs() < 1e-6);
-    // Each correction is nearer to the truth than the last.
-    let off = |p: f64| (p / benchmark.probability - 1.0).abs();
-    assert!(off(refined) < off(breitung) && off(breitung) < off(tail));
-}
-
-#[test]
-fn analytic_sorm_of_a_hundred_dimensions() {
-    // A paraboloid with κ_i = i/200: 99 curvatures at once, as analytic as one.
-    let bowl = Function {
-        dimension: 100,
-        limits: 1,
-        margins: |z, margins| {
-            let bend = |(i, x): (usize, &f64)| i as f64 / 400.0 * x * x;
-            margins.push(4.0 - z[0] + z.iter().enumerate().map(bend).sum::<f64>());
-        },
-    };
-    // β read off a plane at angle φ from the point is off by β φ²/2: nothing at 1e-6.
-    let search = SearchOptions { angle_tolerance: 1e-6, ..SearchOptions::default() };
-    let options = SormOptions { search, ..SormOptions::default() };
-    let (second, _) = sorm(&bowl, 0, &options).unwrap();
-    for (i, kappa) in second.curvatures.iter().enumerate() {
-        assert!((kappa - (i + 1) as f64 / 200.0).abs() < 1e-6);
-    }
-    let product: f64 = (1..100).map(|i| 1.0 + 4.0 * f64::from(i) / 200.0).product();
-    let breitung = normal::survival(4.0) / product.sqrt();
-    assert!((second.breitung.probability.unwrap() / breitung - 1.0).abs() < 1e-5);
-}
-
-#[test]
-fn property_sorm_without_a_value_reports_no_number() {
-    // The shell of RP63 curves around the origin.
-    let benchmark = named("RP63");
-    let search = SearchOptions { directions: 0, ..SearchOptions::default() };
-    let options = SormOptions { search, ..SormOptions::default() };
-    let (second, _) = sorm(&benchmark.limits, 0, &options).unwrap();
-    assert_eq!(second.breitung.probability, None);
-}
-
-#[test]
 fn analytic_system_form_of_two_planes() {
     // RP33 is two planes at distance 3 with α·α = 1/√3: the union is exact, up to quadrature and search.
     let benchmark = named("RP33");
@@ -187,18 +135,17 @@ fn analytic_system_form_of_two_planes() {
     assert!((both.probability.unwrap() / exact - 1.0).abs() < 1e-3);
 }
 
-/// Ten recorded seeds of a method on a problem with a share of its default effort: every estimate within
+/// Ten recorded seeds of a method on a problem with a share of its default effort: every estimate with an interval within
 /// five of its standard errors of the truth (a chance of 6e-7 each for a normal error), at least
-/// 7 of 10 intervals holding it (fewer has a chance of 1e-3 at 95 %; the certificate measures coverage
+/// 7 of 10 intervals stated and holding it (fewer has a chance of 1e-3 at 95 %; the certificate measures coverage
 /// itself).
 fn holds(method: Method, benchmark: &Benchmark, effort: f64) {
     let mut held = 0;
     for seed in 0..10 {
         let estimate = answer(method, benchmark, seed, effort);
         let (p, error) = (estimate.probability.unwrap(), estimate.standard_error.unwrap());
-        let interval = estimate.interval.interval().copied();
-        let interval =
-            interval.unwrap_or_else(|| panic!("{}: {}", benchmark.id, estimate.interval));
+        // A withdrawn interval does not hold anything.
+        let Some(interval) = estimate.interval.interval() else { continue };
         // The interval of a plane is wider than its error, which is nothing but the root's tolerance.
         let error = error.max((interval.upper - interval.lower) / 4.0);
         let off = (p - benchmark.probability).abs() / error;
@@ -212,8 +159,17 @@ fn holds(method: Method, benchmark: &Benchmark, effort: f64) {
 
 #[test]
 fn published_problems_by_crude_monte_carlo() {
-    for benchmark in benchmarks::all().iter().filter(|b| b.probability > 1e-3) {
-        holds(Method::CrudeMonteCarlo, benchmark, 0.1);
+    for benchmark in &benchmarks::all() {
+        if benchmark.probability > 1e-3 {
+            holds(Method::CrudeMonteCarlo, benchmark, 0.1);
+            continue;
+        }
+        // Hardly a breach is seen: no standard error to go by, but the exact interval holds all the same.
+        let held = (0..10).filter(|&seed| {
+            let estimate = answer(Method::CrudeMonteCarlo, benchmark, seed, 0.1);
+            estimate.interval.interval().is_some_and(|i| i.contains(benchmark.probability))
+        });
+        assert!(held.count() >= 7, "{}", benchmark.id);
     }
 }
 
@@ -240,17 +196,41 @@ fn published_problems_by_line_sampling() {
     }
 }
 
+/// Problems that few random directions see: many dimensions, or a small corner.
+const UNSEEN: [&str; 8] =
+    ["RP38", "RP25", "RP8", "DAMPED_15_0", "DAMPED_27_5", "UNDAMPED_0_45", "RP107", "RP63"];
+
 #[test]
 fn published_problems_by_directional_sampling() {
-    for id in ["RP22", "RP53", "RMINUSS", "RSQUAD", "CANTILEVER2D", "RP33", "RP55", "FOURBRANCH"] {
-        holds(Method::DirectionalSampling, &named(id), 1.0);
+    for benchmark in benchmarks::all().iter().filter(|b| !UNSEEN.contains(&b.id)) {
+        holds(Method::DirectionalSampling, benchmark, 1.0);
+    }
+}
+
+#[test]
+fn published_trap_directional_sampling_says_what_it_cannot_see() {
+    for id in UNSEEN {
+        let estimate = answer(Method::DirectionalSampling, &named(id), 1, 1.0);
+        assert!(estimate.interval.why_none().is_some(), "{id}: {estimate:?}");
     }
 }
 
 #[test]
 fn published_problems_by_cross_entropy() {
-    for id in ["RP22", "RP25", "RP8"] {
-        holds(Method::CrossEntropy, &named(id), 0.5);
+    for benchmark in &benchmarks::all() {
+        holds(Method::CrossEntropy, benchmark, 1.0);
+    }
+}
+
+#[test]
+fn regression_cross_entropy_is_not_misled_by_the_kinks_of_rp110() {
+    // The learning once closed off half of the region in three seeds of ten: 86 % of the intervals held, the
+    // standard errors of those seeds scattered from 1.5 to 5 %. Its points are pooled now.
+    let benchmark = named("RP110");
+    for seed in 0..10 {
+        let estimate = answer(Method::CrossEntropy, &benchmark, seed, 1.0);
+        let error = estimate.relative_standard_error().unwrap();
+        assert!(error < 0.02, "seed {seed}: {error}");
     }
 }
 
@@ -263,10 +243,17 @@ fn published_coverage_certificate_in_short() {
         (Method::SubsetSimulation, "RP53"),
         (Method::LineSampling, "RP33"),
         (Method::DirectionalSampling, "RMINUSS"),
+        (Method::CrossEntropy, "RP25"),
     ] {
-        let row = Coverage::measure(method, &named(id), 20, 0.5);
+        let benchmark = named(id);
+        let trials: Vec<Trial> =
+            (0..20).map(|seed| Trial::run(method, &benchmark, seed, 0.5)).collect();
+        let row = Coverage::of(method, &benchmark, &trials);
         assert!(row.stated == 20 && row.held >= 15, "{}", row.markdown());
         assert_eq!(row.csv().split(',').count(), CSV_HEADER.split(',').count());
+        // A certificate that goes on where it stopped reads its rows back.
+        let kept = Coverage::from_csv(method, &benchmark, &row.csv()).unwrap();
+        assert_eq!(kept.csv(), row.csv());
     }
 }
 
