@@ -27,6 +27,10 @@ pub(super) enum Command {
     Run(RunArguments),
     /// Compute one nominal descent and show its outcomes
     Descend(DescendArguments),
+    /// Say what changed between two finished runs: inputs, probabilities, margins, drivers
+    Compare(CompareArguments),
+    /// Map the design space along one or two paths: outcomes, margins, probabilities, best values
+    Sweep(SweepArguments),
     /// Find the cheapest tightenings and design change that meet a target, and confirm them
     Tighten(TightenArguments),
     /// Compute one sample of a run again, and compare it bit for bit
@@ -114,12 +118,68 @@ pub(super) struct DescendArguments {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct CompareArguments {
+    /// Directory of the run before
+    #[arg(value_name = "RUN_A")]
+    pub before: PathBuf,
+    /// Directory of the run after
+    #[arg(value_name = "RUN_B")]
+    pub after: PathBuf,
+    /// Write the comparison as Markdown too
+    #[arg(long, value_name = "FILE")]
+    pub markdown: Option<PathBuf>,
+    /// Print the comparison as one JSON object in SI, and nothing else, on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SweepArguments {
+    #[command(flatten)]
+    pub study: StudyArguments,
+    /// A design path and its values, such as fluid.nominal_viscosity=80000cSt..160000cSt:33; once or twice
+    #[arg(long, value_name = "PATH=FROM..TO:N", required = true)]
+    pub over: Vec<String>,
+    /// Take the values of this swept path as exact, in place of the card's law for it [default for what
+    /// becomes known on the day]
+    #[arg(long, value_name = "PATH")]
+    pub hold: Vec<String>,
+    /// Move the card's law for this swept path to each value, with its spread [default for everything
+    /// else that is uncertain]
+    #[arg(long, value_name = "PATH")]
+    pub centre: Vec<String>,
+    /// Samples in each cell, the same points in all of them [default: 8 million descents shared among the
+    /// cells, at most 100000 a cell]
+    #[arg(long, value_name = "N", conflicts_with = "nominal")]
+    pub samples: Option<String>,
+    /// Outcomes and margins of nominal descents only, no probabilities
+    #[arg(long)]
+    pub nominal: bool,
+    /// Seed of every random stream, in place of the study's
+    #[arg(long, value_name = "S")]
+    pub seed: Option<String>,
+    /// Directory for report, figures and table [default: runs/<study>-sweep]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Number of threads [default: one a core]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Print the findings as one JSON object in SI, and nothing else, on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct TightenArguments {
     #[command(flatten)]
     pub study: StudyArguments,
     /// Largest acceptable probability of any breach, in place of the study's: 0.01 or "1 %"
     #[arg(long, value_name = "P")]
     pub target: Option<String>,
+    /// Let a design value move at no cost, in place of the study's (fluid.nominal_viscosity="90000 cSt..140000 cSt");
+    /// may be given several times; "none" holds every one
+    #[arg(long = "move", value_name = "PATH=LEAST..MOST")]
+    pub moves: Vec<String>,
     /// Directory for tighten.json and tighten.md
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod check;
+mod compare;
 mod descend;
 mod describe;
 mod diagnostics;
@@ -9,6 +10,8 @@ mod output;
 mod parentage;
 mod replay;
 mod run;
+mod sensitivity_table;
+mod sweep;
 mod tighten;
 mod trade_tables;
 mod watch;
@@ -63,6 +66,8 @@ fn carry_out(arguments: Arguments) -> Result<Ending> {
         None => run::run(&arguments.run),
         Some(Command::Run(run)) => run::run(&run),
         Some(Command::Descend(descend)) => descend::descend(&descend),
+        Some(Command::Compare(compare)) => compare::compare(&compare),
+        Some(Command::Sweep(sweep)) => sweep::sweep(&sweep),
         Some(Command::Tighten(tighten)) => tighten::tighten(&tighten),
         Some(Command::Replay(replay)) => replay::replay(&replay),
         Some(Command::Check(check)) => check::check(&check),

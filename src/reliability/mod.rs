@@ -7,6 +7,7 @@
 pub mod allocation;
 pub mod binomial_tails;
 pub mod breach_counts;
+pub mod cheaper_plans;
 pub mod demonstration;
 pub mod nested;
 pub mod normal_tolerance;
@@ -14,6 +15,7 @@ pub mod paired;
 pub mod probability;
 pub mod quantiles;
 pub mod replicates;
+pub mod unpaired;
 
 // Limit states in standard-normal space and the methods that walk them.
 pub mod adaptive;

@@ -7,6 +7,7 @@ use super::figures_of_speech::{
     bare, count, maybe, probability, probability_interval, upper_end, value, value_interval,
 };
 use super::known_view::{Known, known};
+use super::measures_view::{Measures, measures};
 use super::trade_view::{Shares, Trade, shares, trade};
 use crate::descent::OutcomeQuantity;
 use crate::findings::{
@@ -32,6 +33,7 @@ pub(super) struct View {
     pub margins: Vec<Margin>,
     pub drivers: Drivers,
     pub shares: Shares,
+    pub measures: Measures,
     pub trade: Trade,
     pub known: Known,
     pub epistemic: Epistemic,
@@ -162,6 +164,7 @@ pub(super) fn view(findings: &Findings) -> View {
         margins: findings.margins.iter().map(margin).collect(),
         drivers: drivers(findings),
         shares: shares(&findings.shapley),
+        measures: measures(&findings.measures),
         trade: trade(&findings.trade),
         known: known(&findings.known),
         epistemic: epistemic(&findings.epistemic),

@@ -77,11 +77,14 @@ impl Study {
             lines.push(format!("until {until} confidence={:e}", stopping.confidence));
         }
         lines.push(format!("numerics tolerance={:e}", self.numerics.tolerance));
-        let plan = self.sensitivity;
+        let plan = &self.sensitivity;
         lines.push(format!(
             "sensitivity base_samples={} bootstrap={}",
             plan.base_samples, plan.bootstrap
         ));
+        lines.extend(
+            plan.pairs.iter().map(|(one, other)| format!("sensitivity pair {one} {other}")),
+        );
         let methods = self.reliability.methods.as_ref();
         lines.push(format!(
             "reliability {}",
@@ -116,7 +119,7 @@ fn cost_text(cost: &TighteningCost) -> Option<String> {
 }
 
 /// SHA-256 of a text, in hexadecimal.
-fn of_text(text: &str) -> String {
+pub(super) fn of_text(text: &str) -> String {
     of_bytes(text.as_bytes())
 }
 

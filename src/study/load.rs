@@ -169,7 +169,7 @@ pub fn read_column(
 }
 
 /// The text of a file, or why there is none.
-fn read_text(path: &Path) -> std::result::Result<String, String> {
+pub(super) fn read_text(path: &Path) -> std::result::Result<String, String> {
     as_text(read_bytes(path)?)
 }
 

@@ -15,7 +15,10 @@ mod inputs;
 mod law;
 mod laws;
 mod load;
+pub mod measured_run;
+mod over;
 mod overrides;
+mod pairs;
 mod place;
 mod read;
 mod resolved;
@@ -34,6 +37,8 @@ use crate::uncertainty::{Joint, Marginal, Measure, Readings};
 pub use assemble::{Files, NamedText, assemble};
 pub use epistemic::{EpistemicPlan, Nature};
 pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, Parquet, read_column, read_sample};
+pub use measured_run::MeasuredRun;
+pub use over::{MOST_CELLS, Over, design_path, option_error};
 pub use overrides::Override;
 pub use resolved::{ResolvedParameter, UncertainLaw};
 pub use tighten::{DesignRange, Grade, TightenPlan, TighteningCost, TradePlan};
@@ -274,12 +279,14 @@ pub struct Numerics {
 }
 
 /// How the sensitivity indices are estimated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SensitivityPlan {
     /// Rows of each block of the pick-freeze design; 0 leaves the indices out.
     pub base_samples: u64,
     /// Number of bootstrap resamples behind each interval.
     pub bootstrap: u32,
+    /// Pairs of inputs, by path or group, whose second-order index is asked for.
+    pub pairs: Vec<(String, String)>,
 }
 
 /// How small probabilities are estimated.

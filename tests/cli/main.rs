@@ -2,6 +2,7 @@
 
 mod acceptance;
 mod artefacts;
+mod comparing;
 mod determinism;
 mod disk;
 mod errors;
@@ -11,5 +12,7 @@ mod program;
 mod published;
 mod readers;
 mod replaying;
+mod sweeping;
+mod tighten;
 mod together;
 mod verdicts;

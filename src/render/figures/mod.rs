@@ -17,20 +17,26 @@
 
 mod axis;
 mod chart;
+mod contour;
 mod convergence;
 mod distribution;
 mod drivers;
 mod fan;
 mod go;
+mod go_map;
 mod interaction;
+mod key;
 mod paper;
 mod svg;
+mod sweep;
+mod sweep_map;
 mod trade;
 mod unknown;
 
 use crate::findings::Findings;
 
 pub use paper::paper_figures;
+pub use sweep::sweep_figures;
 
 /// One figure.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,7 +111,13 @@ pub fn figures(findings: &Findings) -> ReportFigures {
             .chain(data.interaction.as_ref().ok().and_then(interaction::figure))
             .collect(),
         trade: trade::figure(findings).into_iter().collect(),
-        known: findings.known.charts.iter().filter_map(go::figure).collect(),
+        known: findings
+            .known
+            .charts
+            .iter()
+            .filter_map(go::figure)
+            .chain(findings.known.map.as_ref().and_then(go_map::figure))
+            .collect(),
         epistemic: unknown::figures(&findings.epistemic),
         descents: fan::figures(findings),
     }

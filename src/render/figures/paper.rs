@@ -2,7 +2,8 @@
 
 use super::Figure;
 use super::axis::Axis;
-use super::chart::{BLUE, Chart, HEIGHT, Swatch, VERMILLION};
+use super::chart::{BLUE, Chart, HEIGHT, VERMILLION};
+use super::key::Swatch;
 use crate::descent::reference::Sample;
 use crate::findings::PaperRuns;
 use crate::units::{Quantity, display};
