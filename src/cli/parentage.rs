@@ -46,7 +46,6 @@ pub(super) fn of(study: &Study) -> Parentage {
 }
 
 /// The digest of everything that fixes a row of the table: the resolved study without its requirement,
-/// The digest of everything that fixes a row of the table: the resolved study without its requirement,
 /// its stopping rule, its sensitivity, reliability, trade, tightening and epistemic plans, what its inputs cost, when
 /// they are known, how they are grouped and what is unknown, and, for a design whose longer run begins with the
 /// shorter, without its number of samples.

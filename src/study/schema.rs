@@ -3,18 +3,20 @@
 //! Made from the tables that the parser reads, so that neither knows a key that the other does not.
 //! A schema cannot tell units, ranges across keys or files; `reeldown check` does.
 
-use super::correlation::MEASURES;
 use super::laws::{Kind, LAWS, LawInfo, TERMS, keys_of};
 use super::vocabulary::{
-    CARD, CORRELATION, EPISTEMIC, GRADE, INPUT, JOINT, KeyInfo, LIMIT, METHODS, NUMERICS,
-    RELIABILITY, REQUIREMENT, SAMPLING, SENSITIVITY, STUDY, TIGHTEN, TRADE, UNTIL,
+    CARD, EPISTEMIC, GRADE, INPUT, KeyInfo, LIMIT, METHODS, NUMERICS, RELIABILITY, REQUIREMENT,
+    SAMPLING, SENSITIVITY, STUDY, TIGHTEN, TRADE, UNTIL,
 };
+mod statements;
+
 use super::{Known, Nature};
 use crate::descent::{Model, OutcomeQuantity};
 use crate::physics::parameters::{PARAMETERS, Parameter, ParameterInfo};
 use crate::sampling;
 use crate::units::Quantity;
 use serde_json::{Map, Value, json};
+use statements::{correlation, joint};
 
 const DRAFT: &str = "https://json-schema.org/draft/2020-12/schema";
 
@@ -420,38 +422,4 @@ fn law_rule(law: &LawInfo, names: &[&str]) -> Value {
             "propertyNames": { "enum": allowed },
         },
     })
-}
-
-/// Inputs that are drawn together.
-fn joint() -> Value {
-    let value = |info: &KeyInfo| match info.name {
-        "file" => text("posterior.parquet"),
-        "columns" => paths(|_| text("shear_factor"), text("gap_3_m")),
-        "sha256" => json!({ "type": "string", "pattern": "^\\s*[0-9a-fA-F]{64}\\s*$" }),
-        "known" => json!({ "enum": Known::ALL.map(Known::name) }),
-        "nature" => json!({ "enum": Nature::ALL.map(Nature::name) }),
-        "cost" => cost(),
-        _ => text("posterior of the truck tests"),
-    };
-    table(JOINT, value, &["file", "known", "source"])
-}
-
-fn correlation() -> Value {
-    let coefficient = json!({ "type": "number", "exclusiveMinimum": -1, "exclusiveMaximum": 1 });
-    let example = json!(["thermal.fluid_capacity", "thermal.rotor_capacity"]);
-    let value = |info: &KeyInfo| match info.name {
-        "between" => json!({
-            "type": "array",
-            "items": { "type": "string" },
-            "minItems": 2,
-            "maxItems": 2,
-            "examples": [example],
-        }),
-        "source" => text("measured on three housings"),
-        _ => coefficient.clone(),
-    };
-    let mut schema = table(CORRELATION, value, &["between", "source"]);
-    let one: Vec<Value> = MEASURES.iter().map(|(name, _)| json!({ "required": [name] })).collect();
-    insert(&mut schema, "oneOf", json!(one));
-    schema
 }
