@@ -16,6 +16,7 @@
 use crate::numerics::elementary;
 use crate::numerics::lanes::elementary::{exp, ln};
 use crate::numerics::lanes::{InstructionSet, Lanes, Pair};
+use crate::streams::{Stream, standard_normal};
 use std::f64::consts::PI;
 
 /// A reading of one channel.
@@ -312,4 +313,22 @@ pub fn whiten(series: &Series, noise: &Noise, columns: &mut [Vec<f64>]) {
             column[k] = difference * scale;
         }
     }
+}
+
+/// Errors drawn for every reading of a series: discrepancy and normal sensor error together, SI.
+pub fn drawn_errors(series: &Series, noise: &Noise, stream: &mut Stream) -> Vec<f64> {
+    let mut discrepancy = noise.discrepancy_sd * standard_normal(stream);
+    let mut before: Option<f64> = None;
+    let mut errors = Vec::with_capacity(series.readings.len());
+    for reading in &series.readings {
+        if let Some(before) = before.replace(reading.time_s) {
+            let interval_s = reading.time_s - before;
+            let keeps = elementary::exp(-interval_s / noise.correlation_time_s);
+            let fresh = noise.discrepancy_sd * (1.0 - keeps * keeps).max(0.0).sqrt();
+            discrepancy = keeps * discrepancy + fresh * standard_normal(stream);
+        }
+        let own = (noise.sensor_sd * noise.sensor_sd + reading.variance).sqrt();
+        errors.push(discrepancy + own * standard_normal(stream));
+    }
+    errors
 }

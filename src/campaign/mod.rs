@@ -5,6 +5,7 @@
 //! order of the samples, so that nothing depends on the number of threads.
 
 pub mod common_numbers;
+pub mod calibration;
 mod evaluate;
 pub mod known;
 mod limit_state;
