@@ -1,5 +1,6 @@
 //! One life of the rig: from release to the end of the line, an outcome or a fault.
 
+pub mod driven;
 pub mod gradient;
 pub mod model;
 pub mod outcome;

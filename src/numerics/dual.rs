@@ -109,6 +109,9 @@ impl<const N: usize> Real for Dual<N> {
         }
         result
     }
+    fn min(self, other: Self) -> Self {
+        if self.value < other.value { self } else { other }
+    }
 }
 
 #[cfg(test)]

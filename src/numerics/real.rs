@@ -27,6 +27,8 @@ pub trait Real:
     fn power(self, exponent: Self) -> Self;
     /// `self · factor + term`, rounded once where the number type can.
     fn mul_add(self, factor: Self, term: Self) -> Self;
+    /// The smaller, with its derivatives; `other` where either is not a number.
+    fn min(self, other: Self) -> Self;
 }
 
 impl Real for f64 {
@@ -50,5 +52,8 @@ impl Real for f64 {
     }
     fn mul_add(self, factor: Self, term: Self) -> Self {
         f64::mul_add(self, factor, term)
+    }
+    fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
     }
 }

@@ -42,6 +42,51 @@ impl<R: Real> Coefficients<R> {
     }
 }
 
+macro_rules! fields {
+    ($($part:ident: $Part:ident { $($name:ident,)* } $also:tt)*) => {
+        /// Number of constants of one descent, apart from whether the fluid thins with shear.
+        pub const FIELD_COUNT: usize = 1 $($(+ { let _ = stringify!($name); 1 })*)*;
+
+        impl<R: Real> Coefficients<R> {
+            /// All constants in a row, in the order that [`Coefficients::from_fields`] takes them.
+            pub fn fields(&self) -> [R; FIELD_COUNT] {
+                [$($(self.$part.$name,)*)* self.initial_temperature_k]
+            }
+
+            /// The constants out of a row of them: how several descents are laid side by side.
+            pub fn from_fields(fields: [R; FIELD_COUNT], shear_thinning: bool) -> Self {
+                let [$($($name,)*)* initial_temperature_k] = fields;
+                Coefficients {
+                    $($part: fields!(@part $Part { $($name,)* } $also shear_thinning),)*
+                    initial_temperature_k,
+                }
+            }
+        }
+    };
+    (@part $Part:ident { $($name:ident,)* } [] $thins:ident) => { $Part { $($name,)* } };
+    (@part $Part:ident { $($name:ident,)* } [thins] $thins:ident) => {
+        $Part { $($name,)* shear_thinning: $thins }
+    };
+}
+
+fields! {
+    reel: Reel {
+        line_length_m, full_radius_squared_m2, squared_radius_slope_m, inertia_kg_m2,
+    } []
+    fluid: Fluid {
+        torque_per_speed_nms, viscosity_temperature_k, averaging_offset, cross_time_s,
+        cross_exponent,
+    } [thins]
+    thermal: Thermal {
+        fluid_capacity_j_per_k, rotor_capacity_j_per_k, housing_capacity_j_per_k,
+        fluid_rotor_w_per_k, fluid_housing_w_per_k, rotor_housing_w_per_k, air_w_per_k, air_k,
+    } []
+    payload: Payload { weight_n, extraction_n_per_m, } []
+    balloon: Balloon {
+        moving_mass_kg, net_lift_n, drag_factor_kg_per_m, rise_speed_m_per_s,
+    } []
+}
+
 impl Coefficients<f64> {
     /// The constants of a design.
     pub fn new(design: &Design<f64>) -> Self {
@@ -50,43 +95,6 @@ impl Coefficients<f64> {
 
     /// The same constants in another number type, without derivatives.
     pub fn lift<S: Real>(&self) -> Coefficients<S> {
-        let c = S::constant;
-        Coefficients {
-            reel: Reel {
-                line_length_m: c(self.reel.line_length_m),
-                full_radius_squared_m2: c(self.reel.full_radius_squared_m2),
-                squared_radius_slope_m: c(self.reel.squared_radius_slope_m),
-                inertia_kg_m2: c(self.reel.inertia_kg_m2),
-            },
-            fluid: Fluid {
-                torque_per_speed_nms: c(self.fluid.torque_per_speed_nms),
-                viscosity_temperature_k: c(self.fluid.viscosity_temperature_k),
-                averaging_offset: c(self.fluid.averaging_offset),
-                cross_time_s: c(self.fluid.cross_time_s),
-                cross_exponent: c(self.fluid.cross_exponent),
-                shear_thinning: self.fluid.shear_thinning,
-            },
-            thermal: Thermal {
-                fluid_capacity_j_per_k: c(self.thermal.fluid_capacity_j_per_k),
-                rotor_capacity_j_per_k: c(self.thermal.rotor_capacity_j_per_k),
-                housing_capacity_j_per_k: c(self.thermal.housing_capacity_j_per_k),
-                fluid_rotor_w_per_k: c(self.thermal.fluid_rotor_w_per_k),
-                fluid_housing_w_per_k: c(self.thermal.fluid_housing_w_per_k),
-                rotor_housing_w_per_k: c(self.thermal.rotor_housing_w_per_k),
-                air_w_per_k: c(self.thermal.air_w_per_k),
-                air_k: c(self.thermal.air_k),
-            },
-            payload: Payload {
-                weight_n: c(self.payload.weight_n),
-                extraction_n_per_m: c(self.payload.extraction_n_per_m),
-            },
-            balloon: Balloon {
-                moving_mass_kg: c(self.balloon.moving_mass_kg),
-                net_lift_n: c(self.balloon.net_lift_n),
-                drag_factor_kg_per_m: c(self.balloon.drag_factor_kg_per_m),
-                rise_speed_m_per_s: c(self.balloon.rise_speed_m_per_s),
-            },
-            initial_temperature_k: c(self.initial_temperature_k),
-        }
+        Coefficients::from_fields(self.fields().map(S::constant), self.fluid.shear_thinning)
     }
 }

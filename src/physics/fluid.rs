@@ -48,6 +48,7 @@ impl<R: Real> Fluid<R> {
     }
 
     /// `exp(B/Tv)` with `Tv = T1 + ε (T1 − T2)`: paper (6) without its constants.
+    #[inline(always)]
     pub fn thickening(&self, fluid_k: R, rotor_k: R) -> R {
         let average_k = self.averaging_offset.mul_add(fluid_k - rotor_k, fluid_k);
         (self.viscosity_temperature_k / average_k).exp()
@@ -55,6 +56,7 @@ impl<R: Real> Fluid<R> {
 
     /// Brake torque `M(ω)`, N·m, at reel speed `speed_rad_per_s`: paper (5) and (6), with Cross shear
     /// thinning `1/(1 + (λ (ν/ν0) γ̇)^m)` when it is on.
+    #[inline(always)]
     pub fn torque_nm(&self, speed_rad_per_s: R, fluid_k: R, rotor_k: R) -> R {
         let thickening = self.thickening(fluid_k, rotor_k);
         let newtonian = self.torque_per_speed_nms * thickening * speed_rad_per_s;
@@ -67,6 +69,7 @@ impl<R: Real> Fluid<R> {
 
     /// The reel speed at which the brake's torque is `torque_nm` > 0, rad/s: paper (15) when the
     /// fluid does not thin with shear.
+    #[inline(always)]
     pub fn speed_of_torque(&self, torque_nm: R, fluid_k: R, rotor_k: R) -> R {
         let thickening = self.thickening(fluid_k, rotor_k);
         let newtonian = torque_nm / (self.torque_per_speed_nms * thickening);
@@ -77,6 +80,7 @@ impl<R: Real> Fluid<R> {
     }
 
     /// The reel speed at which the brake takes up `power_w` > 0, rad/s.
+    #[inline(always)]
     pub fn speed_of_power(&self, power_w: R, fluid_k: R, rotor_k: R) -> R {
         let thickening = self.thickening(fluid_k, rotor_k);
         let newtonian = (power_w / (self.torque_per_speed_nms * thickening)).sqrt();
@@ -92,6 +96,7 @@ impl<R: Real> Fluid<R> {
     /// In `y = ln x` this reads `k (y − ln a) = ln(1 + e^{m y})`, whose left side minus right side is
     /// increasing and concave for `m` < 1: Newton's method from `ln a`, left of the root, rises to it
     /// monotonically and, the slope lying between `k − m` and `k`, in a few steps.
+    #[inline(always)]
     fn thinned_speed(&self, newtonian_rad_per_s: R, thickening: R, order: R) -> R {
         let one = R::constant(1.0);
         let group_per_speed = self.cross_time_s * thickening;

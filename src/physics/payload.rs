@@ -24,6 +24,7 @@ impl<R: Real> Payload<R> {
     }
 
     /// Weight extracted after `line_m` of line `ΔW = Wx l/L`, N.
+    #[inline(always)]
     pub fn extracted_n(&self, line_m: R) -> R {
         self.extraction_n_per_m * line_m
     }

@@ -22,12 +22,14 @@ pub enum Pull<R> {
 }
 
 /// The state at release.
+#[inline(always)]
 pub fn initial<R: Real>(c: &Coefficients<R>) -> QuasiSteadyState<R> {
     let warm = c.initial_temperature_k;
     [R::constant(0.0), warm, warm, warm]
 }
 
 /// Rates and readings of the quasi-steady model: paper (8), (15), (16), (17).
+#[inline(always)]
 pub fn moment<R: Real>(
     c: &Coefficients<R>,
     pull: Pull<R>,

@@ -32,6 +32,7 @@ impl<R: Real> Reel<R> {
     }
 
     /// Squared radius of the wound line after `line_m` has been paid out, m²: paper (7), squared.
+    #[inline(always)]
     pub fn radius_squared_m2(&self, line_m: R) -> R {
         (-self.squared_radius_slope_m).mul_add(line_m, self.full_radius_squared_m2)
     }

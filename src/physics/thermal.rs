@@ -43,6 +43,7 @@ impl<R: Real> Thermal<R> {
 
     /// Rates of the three temperatures, K/s, with `power_w` dissipated in the fluid: paper (16), (17)
     /// and a loss to the air from the housing.
+    #[inline(always)]
     pub fn rates(&self, temperatures_k: [R; 3], power_w: R) -> [R; 3] {
         let [fluid, rotor, housing] = temperatures_k;
         let to_rotor = self.fluid_rotor_w_per_k * (fluid - rotor);

@@ -109,7 +109,7 @@ fn cost_text(cost: &TighteningCost) -> Option<String> {
 }
 
 /// SHA-256 of a text, in hexadecimal.
-fn of_text(text: &str) -> String {
+pub(super) fn of_text(text: &str) -> String {
     hexadecimal(&Sha256::digest(text.as_bytes()))
 }
 

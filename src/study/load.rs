@@ -121,7 +121,7 @@ pub fn read_column(
 }
 
 /// The text of a file, or why there is none.
-fn read_text(path: &Path) -> std::result::Result<String, String> {
+pub(super) fn read_text(path: &Path) -> std::result::Result<String, String> {
     let bytes = std::fs::read(path).map_err(|error| match error.kind() {
         std::io::ErrorKind::NotFound => "no such file".to_owned(),
         std::io::ErrorKind::IsADirectory => "it is a directory".to_owned(),

@@ -14,6 +14,7 @@ mod inputs;
 mod law;
 mod laws;
 mod load;
+pub mod measured_run;
 mod overrides;
 mod place;
 mod read;
@@ -31,6 +32,7 @@ use crate::uncertainty::{Joint, Marginal, Measure};
 
 pub use assemble::{Files, NamedText, assemble};
 pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, ParquetColumn, read_column};
+pub use measured_run::MeasuredRun;
 pub use overrides::Override;
 pub use resolved::{ResolvedParameter, UncertainLaw};
 pub use tighten::{DesignRange, Grade, TightenPlan, TighteningCost, TradePlan};

@@ -1,6 +1,7 @@
 //! Studies and cards: what is read, what is refused and how it is said.
 
 mod corpus;
+mod measured_runs;
 mod mutations;
 mod overrides;
 mod schema;

@@ -2,6 +2,7 @@
 
 mod benchmarks;
 mod breach_probability;
+mod driven_runs;
 mod paper_statements;
 mod reference_descents;
 mod reliability_methods;

@@ -18,11 +18,13 @@ mod instruction_set;
 mod pair;
 mod scalar;
 mod tangent;
+mod wide;
 
 pub use instruction_set::InstructionSet;
 pub use pair::Pair;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 pub use tangent::Tangent;
+pub use wide::Wide;
 
 /// The magic number 1.5 · 2⁵²: adding it rounds a small number to a whole one, which then stands in the
 /// low bits of the sum.

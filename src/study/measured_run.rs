@@ -1,0 +1,428 @@
+//! One measured run of the rig, or of a flight: columns of a CSV text with units in the header, or of a
+//! Parquet file in SI.
+//!
+//! # The file
+//! ```text
+//! # comments start with a number sign; empty lines are skipped
+//! time [s], force [lbf], speed [ft/s], line [ft], fluid [°F], rotor [°F], housing [°F]
+//! 0, 6010, 1.52, 0, 60.1, 60.0, 59.9
+//! ```
+//! The first line that is neither empty nor a comment is the header: column names from [`CHANNELS`], each
+//! with a unit in square brackets (any that studies know), separated by commas, in any order. `time` and one
+//! of `force` and `speed` are needed; the rest is what was instrumented. Every further line is one reading,
+//! with a number in every column. Fields may be quoted; numbers have a decimal point.
+//!
+//! In a Parquet file the columns are in SI under the names `time_s`, `force_n`, `speed_m_per_s`, `line_m`,
+//! `fluid_temperature_k`, `rotor_temperature_k`, `housing_temperature_k` (also `tension_n` and
+//! `velocity_m_per_s`, as in the traces that `reeldown` writes).
+
+use super::digest;
+use super::place::{Place, Text};
+use crate::descent::driven::{Drive, Record};
+use crate::error::{Error, Result};
+use crate::units::spelling::nearest;
+use crate::units::{self, Quantity, number};
+use std::path::Path;
+use std::sync::Arc;
+
+/// What a run can hold, besides time: name in the header, quantity, names of Parquet columns.
+pub const CHANNELS: [(&str, Quantity, &[&str]); 7] = [
+    ("time", Quantity::Time, &["time_s"]),
+    ("force", Quantity::Force, &["force_n", "tension_n"]),
+    ("speed", Quantity::Speed, &["speed_m_per_s", "velocity_m_per_s"]),
+    ("line", Quantity::Length, &["line_m"]),
+    ("fluid", Quantity::Temperature, &["fluid_temperature_k"]),
+    ("rotor", Quantity::Temperature, &["rotor_temperature_k"]),
+    ("housing", Quantity::Temperature, &["housing_temperature_k"]),
+];
+
+/// A step in time this many times the usual one is a gap.
+const GAP: f64 = 5.0;
+/// The hottest that an instrument can have read, K.
+const HOTTEST_K: f64 = 2000.0;
+
+/// Reads every number column of a Parquet file: names and values, `None` for null. A failure is its reason.
+/// Only a higher floor knows Parquet, so it hands the reader in.
+pub type ParquetColumns = fn(&Path) -> std::result::Result<Vec<(String, Vec<Option<f64>>)>, String>;
+
+/// What is accepted of a file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Acceptance {
+    /// Longest step in time, as a multiple of the file's median step; infinite accepts gaps.
+    pub longest_step: f64,
+}
+
+impl Default for Acceptance {
+    fn default() -> Self {
+        Acceptance { longest_step: GAP }
+    }
+}
+
+/// A measured run, SI. Every column that is there is as long as `time_s`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredRun {
+    /// The file's name.
+    pub origin: String,
+    /// SHA-256 of the numbers in SI, in hexadecimal: independent of units, comments and spacing.
+    pub digest: String,
+    /// Times, s, strictly increasing.
+    pub time_s: Vec<f64>,
+    /// Pull on the line, N.
+    pub force_n: Option<Vec<f64>>,
+    /// Speed of the line, m/s.
+    pub speed_m_per_s: Option<Vec<f64>>,
+    /// Line paid out, m.
+    pub line_m: Option<Vec<f64>>,
+    /// Fluid temperature, K.
+    pub fluid_k: Option<Vec<f64>>,
+    /// Temperature of rotors and stators, K.
+    pub rotor_k: Option<Vec<f64>>,
+    /// Housing temperature, K.
+    pub housing_k: Option<Vec<f64>>,
+}
+
+impl MeasuredRun {
+    /// Reads a run from a CSV file, or from a Parquet file (by its ending).
+    ///
+    /// # Errors
+    /// [`Error::File`] for a file that cannot be read; else what [`MeasuredRun::from_csv`] says.
+    pub fn load(path: &Path, acceptance: Acceptance, parquet: ParquetColumns) -> Result<Self> {
+        let origin = path.display().to_string();
+        let help = "name a CSV file with a header such as: time [s], force [lbf], speed [ft/s]";
+        let cannot_read = |reason: String| Error::file(path, "read", reason, help);
+        if path.extension().is_some_and(|ending| ending == "parquet") {
+            return from_columns(&origin, parquet(path).map_err(cannot_read)?, acceptance);
+        }
+        let text = super::load::read_text(path).map_err(cannot_read)?;
+        Self::from_csv(&origin, &text, acceptance)
+    }
+
+    /// Reads a run from a CSV text called `origin`.
+    ///
+    /// # Errors
+    /// A [`crate::error::Diagnostic`] at the place: a column that is unknown, twice, or without its unit; a
+    /// missing or extra value; not a number; an impossible value; a time that does not increase; a gap.
+    pub fn from_csv(origin: &str, text: &str, acceptance: Acceptance) -> Result<Self> {
+        Csv::new(origin, text).run(acceptance)
+    }
+
+    /// The column of a channel, by its place in [`CHANNELS`].
+    pub fn channel(&self, channel: usize) -> Option<&[f64]> {
+        match channel {
+            0 => Some(&self.time_s),
+            1 => self.force_n.as_deref(),
+            2 => self.speed_m_per_s.as_deref(),
+            3 => self.line_m.as_deref(),
+            4 => self.fluid_k.as_deref(),
+            5 => self.rotor_k.as_deref(),
+            6 => self.housing_k.as_deref(),
+            _ => None,
+        }
+    }
+
+    /// The history that drives a prediction of this run: its force or its speed.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if the run does not hold it.
+    pub fn record(&self, drive: Drive) -> Result<Record> {
+        let values = match drive {
+            Drive::Force => self.force_n.as_ref(),
+            Drive::Speed => self.speed_m_per_s.as_ref(),
+            Drive::Power => None,
+        };
+        let Some(values) = values else {
+            let name = drive.name();
+            return Err(Error::argument(format!("{} holds no column `{name}`", self.origin)));
+        };
+        Record::new(drive, self.time_s.clone(), values.clone())
+    }
+
+    /// What drives a prediction unless told otherwise: the force, if it was recorded.
+    pub fn preferred_drive(&self) -> Drive {
+        if self.force_n.is_some() { Drive::Force } else { Drive::Speed }
+    }
+
+    fn new(origin: &str, mut columns: [Option<Vec<f64>>; CHANNELS.len()]) -> Self {
+        let mut canonical = "reeldown measured run 1\n".to_owned();
+        for ((name, ..), column) in CHANNELS.iter().zip(&columns) {
+            if let Some(values) = column {
+                let values: Vec<String> = values.iter().map(|v| format!("{v:e}")).collect();
+                canonical += &format!("{name} {}\n", values.join(" "));
+            }
+        }
+        let [time, force, speed, line, fluid, rotor, housing] =
+            std::array::from_fn(|k| columns[k].take());
+        MeasuredRun {
+            origin: origin.to_owned(),
+            digest: digest::of_text(&canonical),
+            time_s: time.unwrap_or_default(),
+            force_n: force,
+            speed_m_per_s: speed,
+            line_m: line,
+            fluid_k: fluid,
+            rotor_k: rotor,
+            housing_k: housing,
+        }
+    }
+}
+
+/// Why a value cannot have been read on an instrument, and what could.
+fn impossible(quantity: Quantity, value: f64) -> Option<(&'static str, String)> {
+    let (problem, expected) = match quantity {
+        Quantity::Temperature if !(value > 0.0 && value < HOTTEST_K) => (
+            "this temperature is impossible",
+            "expected one above absolute zero and below 2000 K: is the unit right?",
+        ),
+        Quantity::Force | Quantity::Speed if value < 0.0 => (
+            "a line cannot be pushed",
+            "expected zero or more: leave out readings from before and after the pull",
+        ),
+        Quantity::Length if value < 0.0 => {
+            ("less than no line cannot be out", "expected zero or more")
+        }
+        _ => return None,
+    };
+    Some((problem, expected.to_owned()))
+}
+
+/// Where the time goes wrong: the row, the problem, what was expected, help.
+fn irregular(times: &[f64], longest: f64) -> Option<(usize, String, String, Option<String>)> {
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if let Some(k) = steps.iter().position(|step| *step <= 0.0) {
+        let (before, now) = (number(times[k], 10), number(times[k + 1], 10));
+        let problem = if times[k + 1] == times[k] {
+            format!("the time {now} s is there twice")
+        } else {
+            format!("the time goes back from {before} s to {now} s")
+        };
+        return Some((k + 1, problem, "expected later times on later lines".to_owned(), None));
+    }
+    let unsorted = steps.clone();
+    steps.sort_by(f64::total_cmp);
+    let median = *steps.get(steps.len() / 2)?;
+    let k = unsorted.iter().position(|step| *step > longest * median)?;
+    let problem = format!(
+        "a gap of {} s before this reading, where the usual step is {} s",
+        number(unsorted[k], 6),
+        number(median, 6)
+    );
+    let expected = format!("expected steps of at most {} times the usual one", number(longest, 6));
+    let help =
+        "a history is taken as linear between its readings: fill the gap, or give the parts \
+                before and after it as runs of their own"
+            .to_owned();
+    Some((k + 1, problem, expected, Some(help)))
+}
+
+/// A CSV text under way.
+struct Csv {
+    text: Arc<Text>,
+}
+
+/// A field: its text without quotes, and the bytes it stands on.
+type Field = (String, std::ops::Range<usize>);
+
+impl Csv {
+    fn new(origin: &str, text: &str) -> Self {
+        Csv { text: Arc::new(Text { origin: origin.to_owned(), text: text.to_owned() }) }
+    }
+
+    fn place(&self, span: std::ops::Range<usize>) -> Place {
+        Place::new(&self.text, span)
+    }
+
+    fn run(&self, acceptance: Acceptance) -> Result<MeasuredRun> {
+        let mut lines = self.lines().into_iter();
+        let Some((header, header_span)) = lines.next() else {
+            let expected = "expected a header such as: time [s], force [lbf], speed [ft/s]";
+            return Err(self.place(0..0).error("the file holds no header", expected));
+        };
+        let columns = self.header(&header)?;
+        for (needed, choices) in [("time", &[0][..]), ("force` or `speed", &[1, 2][..])] {
+            if !columns.iter().any(|(channel, _)| choices.contains(channel)) {
+                let expected = "expected time and one of force and speed at least";
+                let problem = format!("the header lacks the column `{needed}`");
+                return Err(self.place(header_span).error(problem, expected));
+            }
+        }
+        let mut values: [Option<Vec<f64>>; CHANNELS.len()] = Default::default();
+        let mut time_spans = Vec::new();
+        for (fields, span) in lines {
+            if fields.len() != columns.len() {
+                let problem = format!(
+                    "{} values where the header names {} columns",
+                    fields.len(),
+                    columns.len()
+                );
+                let expected = format!("expected {} values", columns.len());
+                return Err(self.place(span).error(problem, expected));
+            }
+            for ((channel, unit), (field, span)) in columns.iter().zip(fields) {
+                let value = self.value(*channel, unit, &field, span.clone())?;
+                if *channel == 0 {
+                    time_spans.push(span);
+                }
+                values[*channel].get_or_insert_default().push(value);
+            }
+        }
+        let times = values[0].as_deref().unwrap_or_default();
+        if times.len() < 2 {
+            let problem = format!("the file holds {} readings", times.len());
+            return Err(self.place(header_span).error(problem, "expected two at least below this"));
+        }
+        if let Some((row, problem, expected, help)) = irregular(times, acceptance.longest_step) {
+            return Err(self.place(time_spans[row].clone()).error_with(problem, expected, help));
+        }
+        Ok(MeasuredRun::new(&self.text.origin, values))
+    }
+
+    /// The lines that hold something, as fields, with the bytes they stand on.
+    fn lines(&self) -> Vec<(Vec<Field>, std::ops::Range<usize>)> {
+        let mut lines = Vec::new();
+        let mut at = 0;
+        for line in self.text.text.split_inclusive('\n') {
+            let start = at;
+            at += line.len();
+            let mark = if start == 0 && line.starts_with('\u{feff}') { 3 } else { 0 };
+            let content = line.get(mark..).unwrap_or("").trim_end();
+            if content.trim().is_empty() || content.trim_start().starts_with('#') {
+                continue;
+            }
+            let start = start + mark;
+            lines.push((fields(content, start), start..start + content.len()));
+        }
+        lines
+    }
+
+    /// The channels of a header with their units.
+    fn header(&self, fields: &[Field]) -> Result<Vec<(usize, String)>> {
+        let mut columns: Vec<(usize, String)> = Vec::new();
+        for (field, span) in fields {
+            let place = self.place(span.clone());
+            if field.contains([';', '\t']) {
+                let expected = "expected commas between columns, and numbers with a decimal point";
+                return Err(place.error("columns are not separated by commas", expected));
+            }
+            let (name, unit) = match field.split_once('[') {
+                Some((name, rest)) => (name.trim(), rest.trim().strip_suffix(']').map(str::trim)),
+                None => (field.trim(), None),
+            };
+            let names = CHANNELS.map(|(name, ..)| name);
+            let Some(channel) = names.iter().position(|known| *known == name.to_lowercase()) else {
+                let expected = format!("expected one of {}, each with its unit", names.join(", "));
+                let help = nearest(&name.to_lowercase(), names).map(|near| {
+                    format!("did you mean `{near}`? A column that is not used must go")
+                });
+                return Err(place.error_with(format!("unknown column `{name}`"), expected, help));
+            };
+            if columns.iter().any(|(other, _)| *other == channel) {
+                return Err(
+                    place.error(format!("column `{name}` is there twice"), "expected it once")
+                );
+            }
+            let quantity = CHANNELS[channel].1;
+            let example = quantity.example();
+            let example = example.split_once(' ').map_or(example, |(_, unit)| unit);
+            let Some(unit) = unit.filter(|unit| !unit.is_empty()) else {
+                let problem = format!("column `{name}` has no unit");
+                return Err(place.error(problem, format!("expected {name} [{example}]")));
+            };
+            if let Err(error) = units::parse(&format!("1 {unit}"), quantity) {
+                let expected = format!("expected a unit of {} in brackets", quantity.described());
+                return Err(place.error_with(error.problem, expected, error.help));
+            }
+            columns.push((channel, unit.to_owned()));
+        }
+        Ok(columns)
+    }
+
+    /// A field's value, SI.
+    fn value(
+        &self,
+        channel: usize,
+        unit: &str,
+        field: &str,
+        span: std::ops::Range<usize>,
+    ) -> Result<f64> {
+        let (name, quantity, _) = CHANNELS[channel];
+        let place = self.place(span);
+        let missing =
+            ["", "-", "na", "n/a", "nan", "null"].contains(&field.to_lowercase().as_str());
+        if missing {
+            let problem = format!("the value of `{name}` is missing");
+            let help = "leave the line out, or the column if it is often missing".to_owned();
+            return Err(place.error_with(problem, "expected a number", Some(help)));
+        }
+        let plain = field.parse::<f64>().ok().filter(|value| value.is_finite());
+        let value = plain.and_then(|_| units::parse(&format!("{field} {unit}"), quantity).ok());
+        let Some(value) = value else {
+            let expected = "expected a number with a decimal point, its unit in the header";
+            return Err(place.error(format!("\"{field}\" is not a finite number"), expected));
+        };
+        match impossible(quantity, value) {
+            Some((problem, expected)) => Err(place.error(problem, expected)),
+            None => Ok(value),
+        }
+    }
+}
+
+/// The fields of a line that begins at byte `start`.
+fn fields(line: &str, start: usize) -> Vec<Field> {
+    let mut fields = Vec::new();
+    let (mut from, mut quoted) = (0, false);
+    let ends = line.char_indices().filter_map(|(at, character)| {
+        quoted ^= character == '"';
+        (character == ',' && !quoted).then_some(at)
+    });
+    for end in ends.chain([line.len()]) {
+        let raw = line.get(from..end).unwrap_or("");
+        let lead = raw.len() - raw.trim_start().len();
+        let written = raw.trim();
+        let field = written.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+        let field = field.unwrap_or(written).trim().to_owned();
+        let begin = start + from + lead;
+        // An empty field is shown by the comma that ends it.
+        fields.push((field, begin..begin + written.len().max(1)));
+        from = end + 1;
+    }
+    fields
+}
+
+/// A run from columns in SI.
+fn from_columns(
+    origin: &str,
+    columns: Vec<(String, Vec<Option<f64>>)>,
+    acceptance: Acceptance,
+) -> Result<MeasuredRun> {
+    let wrong = |what: String| Err(Error::argument(format!("{origin}: {what}")));
+    let mut values: [Option<Vec<f64>>; CHANNELS.len()] = Default::default();
+    for (channel, (name, quantity, names)) in CHANNELS.iter().enumerate() {
+        let mut found = columns.iter().filter(|(column, _)| names.contains(&column.as_str()));
+        let Some((column, entries)) = found.next() else { continue };
+        if let Some((other, _)) = found.next() {
+            return wrong(format!("columns {column} and {other} both hold the {name}"));
+        }
+        let mut series = Vec::with_capacity(entries.len());
+        for (row, entry) in entries.iter().enumerate() {
+            let Some(value) = entry.filter(|value| value.is_finite()) else {
+                return wrong(format!("row {} of column {column} is missing", row + 1));
+            };
+            if let Some((problem, expected)) = impossible(*quantity, value) {
+                return wrong(format!("row {} of {column}: {problem}: {expected}", row + 1));
+            }
+            series.push(value);
+        }
+        values[channel] = Some(series);
+    }
+    let times = values[0].as_deref().unwrap_or_default();
+    if times.len() < 2 || (values[1].is_none() && values[2].is_none()) {
+        return wrong(
+            "expected a column time_s with two rows at least, and force_n or speed_m_per_s"
+                .to_owned(),
+        );
+    }
+    if let Some((row, problem, expected, _)) = irregular(times, acceptance.longest_step) {
+        return wrong(format!("row {}: {problem}: {expected}", row + 1));
+    }
+    Ok(MeasuredRun::new(origin, values))
+}
