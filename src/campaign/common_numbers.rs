@@ -226,12 +226,22 @@ impl<'a> CommonSample<'a> {
         let replicates = sampler.replicates() as usize;
         let inputs = Columns::new(points.rows(), points.columns());
         let mut sample = CommonSample { study, replicates, points, inputs };
-        let columns: Vec<usize> = (0..study.inputs.len()).collect();
+        let columns: Vec<usize> = (0..study.inputs.len()).filter(|&j| sample.is_alone(j)).collect();
         let values = in_parallel(&columns, |&j| sample.column(&study.inputs[j].marginal, j));
-        for (j, column) in values.iter().enumerate() {
+        for (&j, column) in columns.iter().zip(&values) {
             sample.inputs.column_mut(j).copy_from_slice(column);
         }
+        sample.fill_drawn_together();
         Ok(sample)
+    }
+
+    /// Writes the inputs that are drawn together with others.
+    fn fill_drawn_together(&mut self) {
+        let CommonSample { study, points, inputs, .. } = self;
+        match study.joint.copula() {
+            None => study.joint.fill_from_uniform(points, inputs),
+            Some(_) => study.joint.fill_from_standard_normal(points, inputs),
+        }
     }
 
     /// The study.
@@ -255,8 +265,21 @@ impl<'a> CommonSample<'a> {
         &self.inputs
     }
 
+    /// Input `j` under the law `marginal`. One that is drawn together with others keeps the rank that its row
+    /// has among the rows: what depends on what stays, and the law alone changes.
     fn column(&self, marginal: &Marginal, j: usize) -> Vec<f64> {
         let mut values = vec![0.0; self.rows()];
+        if self.study.joint.sample_of(j).is_some() {
+            let own = &self.study.inputs[j].marginal;
+            for (value, &x) in values.iter_mut().zip(self.inputs.column(j)) {
+                let (below, above) = (own.cdf(x), own.survival(x));
+                *value = match below <= above {
+                    true => marginal.quantile_lower(below),
+                    false => marginal.quantile_upper(above),
+                };
+            }
+            return values;
+        }
         match self.study.joint.copula() {
             None => marginal.quantile_column(self.points.column(j), &mut values),
             Some(_) => marginal.from_standard_normal_column(self.points.column(j), &mut values),
@@ -325,7 +348,7 @@ impl<'a> CommonSample<'a> {
             for k in 0..points.rows() {
                 conditioning.apply(&mut points, k, &targets);
             }
-            for j in 0..points.columns() {
+            for j in (0..points.columns()).filter(|&j| self.is_alone(j)) {
                 law(j).from_standard_normal_column(points.column(j), inputs.column_mut(j));
             }
         }
@@ -335,6 +358,11 @@ impl<'a> CommonSample<'a> {
         Ok(())
     }
 
+    /// Whether input `j` is not drawn together with others.
+    fn is_alone(&self, j: usize) -> bool {
+        self.study.joint.sample_of(j).is_none()
+    }
+
     fn rows_of_correlation(&self, copula: &crate::uncertainty::Copula) -> Vec<Vec<f64>> {
         let n = copula.dimension();
         let row = |i| (0..n).map(|j| copula.normal_correlation(i, j)).collect();
@@ -342,16 +370,23 @@ impl<'a> CommonSample<'a> {
     }
 
     /// Draws in which row `k` keeps the inputs `given` of row `of(k)` of this sample and takes the others
-    /// from `others`' row `k`, by their laws given those.
+    /// from `others`' row `k`, by their laws given those. Inputs that are drawn together are given together.
     ///
     /// # Errors
-    /// If the copula cannot be conditioned so.
+    /// If the copula cannot be conditioned so, or some of the inputs drawn together are given and others not.
     pub fn mixed(
         &self,
         given: &[usize],
         of: impl Fn(usize) -> usize,
         others: &CommonSample<'_>,
     ) -> Result<Columns> {
+        for sample in self.study.joint.samples() {
+            let count = sample.inputs().iter().filter(|j| given.contains(j)).count();
+            if count != 0 && count != sample.inputs().len() {
+                let reason = "inputs that are drawn together cannot be given apart";
+                return Err(Error::argument(reason));
+            }
+        }
         let mut inputs = others.inputs.clone();
         if let Some(copula) = self.study.joint.copula() {
             let conditioning = Conditioning::new(self.rows_of_correlation(copula), given)?;
@@ -360,7 +395,7 @@ impl<'a> CommonSample<'a> {
                 let targets: Vec<f64> = given.iter().map(|&j| self.points.get(of(k), j)).collect();
                 conditioning.apply(&mut points, k, &targets);
             }
-            for j in 0..points.columns() {
+            for j in (0..points.columns()).filter(|&j| self.is_alone(j)) {
                 let marginal = &self.study.inputs[j].marginal;
                 marginal.from_standard_normal_column(points.column(j), inputs.column_mut(j));
             }

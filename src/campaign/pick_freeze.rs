@@ -35,12 +35,14 @@ impl PickFreezeOutcomes {
     }
 }
 
-/// The factors of a study: every input by itself, then every group of several as one.
+/// The factors of a study: every input by itself, then every group of several as one. Inputs that are drawn
+/// together are one factor and none by themselves.
 pub fn factors(study: &Study) -> Vec<Factor> {
     let single = study
         .inputs
         .iter()
         .enumerate()
+        .filter(|(k, _)| study.joint.sample_of(*k).is_none_or(|sample| sample.inputs().len() == 1))
         .map(|(k, input)| Factor { name: input.target.path(), columns: vec![k] });
     let mut groups: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (k, input) in study.inputs.iter().enumerate() {
@@ -49,7 +51,11 @@ pub fn factors(study: &Study) -> Vec<Factor> {
         }
     }
     let groups = groups.into_iter().filter(|(_, columns)| columns.len() > 1);
-    let grouped = groups.map(|(name, columns)| Factor { name: format!("{name} (all)"), columns });
+    let grouped = groups.map(|(name, columns)| {
+        let drawn = columns.iter().any(|&k| study.joint.sample_of(k).is_some());
+        let name = if drawn { name.to_owned() } else { format!("{name} (all)") };
+        Factor { name, columns }
+    });
     single.chain(grouped).collect()
 }
 

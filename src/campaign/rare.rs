@@ -72,6 +72,20 @@ pub fn rare_events(study: &Study, record: &Record, progress: &Progress) -> Resul
     Ok(found)
 }
 
+/// The method, if it goes by slopes of the margins.
+fn needs_slopes(method: &str) -> Option<Method> {
+    match method {
+        "form" => Some(Method::Form),
+        "sorm" => Some(Method::SormBreitung),
+        "line-sampling" => Some(Method::LineSampling),
+        _ => None,
+    }
+}
+
+/// Why such a method has no number where inputs are drawn from rows.
+const STEPS: &str = "inputs are drawn from the rows of a joint sample: the margins are step functions of the \
+    coordinate that picks the row, without the slopes that this method goes by";
+
 fn rare_event(
     study: &Study,
     record: &Record,
@@ -99,6 +113,10 @@ fn rare_event(
         }
     }
     for &method in methods {
+        if let Some(smooth) = needs_slopes(method).filter(|_| !study.joint.samples().is_empty()) {
+            estimates.push(Estimate::without_number(smooth, event, STEPS));
+            continue;
+        }
         match method {
             "form" => {
                 let (estimate, found) = match event {

@@ -33,6 +33,9 @@ fn without_score(study: &Study, columns: &[usize]) -> Option<String> {
             "the inputs are correlated: see the difference by common random numbers".into(),
         );
     }
+    if columns.iter().any(|&j| study.joint.sample_of(j).is_some()) {
+        return Some("rows of a joint sample have no density".into());
+    }
     let ended = |&j: &usize| {
         let law = study.inputs[j].marginal.law();
         !matches!(law, Law::Normal { .. } | Law::Lognormal { .. } | Law::Gumbel { .. })

@@ -239,6 +239,7 @@ fn curve(
     let sd = columns.first().map_or(0.0, |&j| study.inputs[j].marginal.law().sd());
     let values: Vec<f64> = match parameter {
         Parameter::Spread => SPREADS.to_vec(),
+        Parameter::Mean if is_mixed(study, columns) => Vec::new(),
         Parameter::Mean => SHIFTS.iter().map(|shift| shift * sd).collect(),
     };
     let mut settings = Vec::with_capacity(values.len());
@@ -280,6 +281,12 @@ fn moved(marginal: &Marginal, parameter: Parameter, delta: f64) -> Result<Margin
     Marginal::new(law, marginal.lower(), marginal.upper())
 }
 
+/// Whether the inputs are of different quantities, which no common step moves.
+fn is_mixed(study: &Study, columns: &[usize]) -> bool {
+    let parameter = |&j: &usize| study.inputs[j].target.parameter;
+    columns.windows(2).any(|pair| parameter(&pair[0]) != parameter(&pair[1]))
+}
+
 fn central_difference(
     sample: &CommonSample<'_>,
     factor: usize,
@@ -289,6 +296,9 @@ fn central_difference(
 ) -> Result<Option<CentralDifference>> {
     let study = sample.study();
     let Some(&first) = columns.first() else { return Ok(None) };
+    if is_mixed(study, columns) {
+        return Ok(None);
+    }
     let law = study.inputs[first].marginal.law();
     let step = STEP * if parameter == Parameter::Mean { law.sd() } else { law.spread() };
     let side = |delta: f64| -> Result<Breaches> {

@@ -1,7 +1,7 @@
 //! The command line.
 
 use crate::error::Result;
-use crate::store::read_number_column;
+use crate::store::PARQUET;
 use crate::study::{Override, Study};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -164,7 +164,7 @@ impl StudyArguments {
             .chain(options)
             .map(|(option, statement)| Override::parse(option, statement))
             .collect::<Result<Vec<_>>>()?;
-        Study::load_with(self.study.as_deref(), &overrides, read_number_column)
+        Study::load_with(self.study.as_deref(), &overrides, PARQUET)
     }
 
     /// A short name for the study: its file's, or its directory's if the file is called `study.toml`.

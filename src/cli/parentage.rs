@@ -2,8 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::sampling::Design;
-use crate::store::{Parentage, read_number_column};
-use crate::study::{Files, NamedText, Override, Study, assemble};
+use crate::store::{PARQUET, Parentage};
+use crate::study::{Files, NamedText, Override, SampleFile, Study, assemble};
 use std::collections::{BTreeMap, VecDeque};
 use std::path::Path;
 
@@ -66,7 +66,7 @@ pub(super) fn row_digest(study: &Study) -> String {
     rows.digest()
 }
 
-/// The study of a file, from its footer alone (and the data files of empirical laws, if it has any).
+/// The study of a file, from its footer alone (and the data files of empirical laws and joint samples, if it has any).
 ///
 /// # Errors
 /// If the footer is of another version, or the study made of it is not the one it names.
@@ -124,6 +124,10 @@ impl Files for Recorded {
         name: &str,
         column: &str,
     ) -> std::result::Result<Vec<f64>, String> {
-        crate::study::read_column(card, name, column, read_number_column)
+        crate::study::read_column(card, name, column, PARQUET)
+    }
+
+    fn sample(&mut self, card: &str, name: &str) -> std::result::Result<SampleFile, String> {
+        crate::study::read_sample(card, name, PARQUET)
     }
 }

@@ -52,7 +52,8 @@ pub struct DesignPointInput {
     pub median: f64,
     /// Probability of a value below it: below ½ the input is low, above it is high.
     pub percentile: f64,
-    /// Importance factor α²: its share of the point's distance.
+    /// Importance factor α²: its share of the point's distance; of inputs drawn together the first has
+    /// the share of all.
     pub importance: f64,
 }
 
@@ -90,7 +91,10 @@ fn finding(study: &Study, rare: &RareEvent) -> RareFinding {
                     path: input.target.path(),
                     value: draw[k],
                     median: input.marginal.median(),
-                    percentile: normal::cdf(point.point[k]),
+                    percentile: match study.joint.sample_of(k) {
+                        Some(_) => input.marginal.cdf(draw[k]),
+                        None => normal::cdf(point.point[k]),
+                    },
                     importance: point.importance[k],
                 })
                 .collect();
@@ -138,8 +142,17 @@ fn story(study: &Study, inputs: &[DesignPointInput], distance: f64) -> String {
                 .map(|known| known.target.parameter.info().quantity);
             let shown = quantity.map_or(input.value.to_string(), |q| engineering(input.value, q));
             let side = if input.percentile < 0.5 { "low" } else { "high" };
+            let together = study.drawn_together.iter().find(|together| {
+                together
+                    .inputs
+                    .first()
+                    .is_some_and(|&j| study.inputs[j].target.path() == input.path)
+            });
+            let others = together.map_or(String::new(), |together| {
+                format!(" with the rest of its row of the {}", together.name)
+            });
             format!(
-                "{} {side} at {shown} ({} of the distance)",
+                "{} {side} at {shown}{others} ({} of the distance)",
                 input.path,
                 percent(input.importance)
             )

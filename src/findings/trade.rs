@@ -215,7 +215,8 @@ fn trade_curve(
         reweighted: None,
     }];
     for setting in &curve.settings {
-        let cross_check = study.joint.is_independent() && setting.value != 0.0;
+        let drawn_together = factor.columns.iter().any(|&j| study.joint.sample_of(j).is_some());
+        let cross_check = study.joint.is_independent() && !drawn_together && setting.value != 0.0;
         points.push(TradePoint {
             setting: setting.value,
             probability: paired.probability(&setting.breaches, Event::Any)?,

@@ -9,6 +9,6 @@ mod outcomes_file;
 mod parquet;
 
 pub use atomic::{AtomicFile, refuse_obstacle, write_text};
-pub use column_file::{NumberColumns, read_number_column, read_number_columns};
+pub use column_file::{NumberColumns, PARQUET, read_number_column, read_number_columns};
 pub use outcomes_file::{OutcomesReader, OutcomesWriter, Parentage};
 pub use parquet::{Field, write_table};

@@ -4,11 +4,13 @@ use super::card::{self, Card};
 use super::document::{self, Node, Value};
 use super::overrides::{Destination, Override, in_place_of, put};
 use super::place::Text;
-use super::{Input, Stated, Study, correlation, inputs, read, sections, tighten};
+use super::together::{self, SampleFile, Together};
+use super::{DrawnTogether, Input, Stated, Study, correlation, inputs, read, sections, tighten};
 use crate::descent::Model;
 use crate::error::{Error, Result};
 use crate::physics::design::{Design, Target};
 use crate::physics::parameters::Parameter;
+use crate::uncertainty::JointSample;
 use crate::units::number;
 use std::sync::Arc;
 
@@ -39,6 +41,15 @@ pub trait Files {
         name: &str,
         column: &str,
     ) -> std::result::Result<Vec<f64>, String>;
+
+    /// The whole of the file `name` that the card `card` names, column by column.
+    ///
+    /// # Errors
+    /// Why the file cannot be read.
+    fn sample(&mut self, card: &str, name: &str) -> std::result::Result<SampleFile, String> {
+        let _ = (card, name);
+        Err("no files of joint samples are read here".to_owned())
+    }
 }
 
 /// Makes the study that a text, its cards and some overrides describe.
@@ -89,7 +100,9 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
     let mut cards = Vec::new();
     for card in &card_texts {
         let text = Arc::new(Text { origin: card.origin.clone(), text: card.text.clone() });
-        cards.push(card::read_card(&document::parse(&text)?)?);
+        let mut card = card::read_card(&document::parse(&text)?)?;
+        card.together = together::read(&card, files)?;
+        cards.push(card);
     }
     let mut card = card::merge(cards);
     for (statement, path, key) in card_overrides {
@@ -99,8 +112,10 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
     }
     let inputs = study_inputs(&card, card_node, &design, files)?;
     check_dimension(&sampling, inputs.len(), find("sampling").unwrap_or(card_node))?;
-    let (joint, correlations) = correlation::joint(&inputs, &card.correlations)?;
-    let notes = notes(&design, &inputs, &stated);
+    let (drawn_together, samples) = drawn_together(&inputs, &card.together)?;
+    let (joint, correlations) = correlation::joint(&inputs, samples, &card.correlations)?;
+    let mut notes = notes(&design, &inputs, &stated);
+    notes.extend(card.together.iter().filter_map(unused));
     Ok(Study {
         title,
         model,
@@ -108,6 +123,7 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
         inputs,
         joint,
         correlations,
+        drawn_together,
         limits,
         requirement,
         sampling,
@@ -211,6 +227,50 @@ fn check_dimension(plan: &super::SamplingPlan, inputs: usize, node: &Node) -> Re
     }
     let problem = format!("{inputs} inputs are too many for the design {}", plan.design.name());
     Err(node.place.error(problem, format!("expected at most {most} inputs, or \"monte-carlo\"")))
+}
+
+/// What is drawn together, with the places of the inputs, for the study and for its joint distribution.
+fn drawn_together(
+    inputs: &[Input],
+    together: &[Together],
+) -> Result<(Vec<DrawnTogether>, Vec<JointSample>)> {
+    let mut drawn = Vec::with_capacity(together.len());
+    let mut samples = Vec::with_capacity(together.len());
+    for together in together {
+        // Inputs and members are both in the order of their targets.
+        let place = |target: Target| inputs.iter().position(|input| input.target == target);
+        let places: Vec<usize> =
+            together.members.iter().filter_map(|(target, _)| place(*target)).collect();
+        let columns: Vec<Vec<f64>> =
+            together.members.iter().map(|(_, values)| values.clone()).collect();
+        samples.push(JointSample::new(places.clone(), &columns)?);
+        drawn.push(DrawnTogether {
+            name: together.group.clone(),
+            file: together.file.clone(),
+            sha256: together.sha256.clone(),
+            rows: together.rows(),
+            inputs: places,
+        });
+    }
+    Ok((drawn, samples))
+}
+
+/// Columns named in a note at most.
+const NAMED_COLUMNS: usize = 6;
+
+fn unused(together: &Together) -> Option<String> {
+    let names: Vec<&str> = together.unused.iter().take(NAMED_COLUMNS).map(String::as_str).collect();
+    let more = match together.unused.len() - names.len() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let columns = names.join(", ");
+    (!names.is_empty()).then(|| {
+        format!(
+            "{}: no input is drawn from its columns {columns}{more}, which are not design paths",
+            together.file
+        )
+    })
 }
 
 /// Share of impossible draws below which nothing is said.

@@ -2,6 +2,7 @@
 
 use super::document::{Key, Node, Table, Value};
 use super::read;
+use super::together::Together;
 use super::vocabulary::CARD;
 use crate::error::Result;
 use crate::physics::design::Target;
@@ -21,6 +22,10 @@ pub(super) struct Statement {
 pub(super) struct Card {
     pub statements: Vec<Statement>,
     pub correlations: Vec<Node>,
+    /// The `[[joint]]` statements.
+    pub joints: Vec<Node>,
+    /// What the `[[joint]]` statements draw, once their files are read.
+    pub together: Vec<Together>,
 }
 
 /// The target of a dotted path: `brake.gap[3]` is the gap of surface 3, counted from 1.
@@ -45,18 +50,24 @@ pub(super) fn read_card(document: &Node) -> Result<Card> {
             "title" | "description" => {
                 read::string(node, "a text")?;
             }
-            "correlation" => match &node.value {
-                Value::Array(items) => card.correlations.extend(items.iter().cloned()),
-                other => {
-                    let problem = format!("this is {}", other.described());
-                    let expected = "expected statements that begin with [[correlation]]";
-                    return Err(node.place.error(problem, expected));
-                }
-            },
+            "correlation" => card.correlations.extend_from_slice(statements(key, node)?),
+            "joint" => card.joints.extend_from_slice(statements(key, node)?),
             _ => collect(key.name.clone(), key, node, &mut card.statements)?,
         }
     }
     Ok(card)
+}
+
+/// The statements that begin with a header in double brackets.
+fn statements<'n>(key: &Key, node: &'n Node) -> Result<&'n [Node]> {
+    match &node.value {
+        Value::Array(items) => Ok(items),
+        other => {
+            let problem = format!("this is {}", other.described());
+            let expected = format!("expected statements that begin with [[{}]]", key.name);
+            Err(node.place.error(problem, expected))
+        }
+    }
 }
 
 /// Collects the inputs at and below `path`.
@@ -86,7 +97,8 @@ fn collect(path: String, key: &Key, node: &Node, into: &mut Vec<Statement>) -> R
     }
 }
 
-fn unknown_input(path: &str, key: &Key) -> crate::error::Error {
+/// The diagnostic of an input that nothing knows.
+pub(super) fn unknown_input(path: &str, key: &Key) -> crate::error::Error {
     let paths = PARAMETERS.iter().map(|info| info.path);
     let groups = paths.clone().filter_map(|path| path.split_once('.')).map(|(group, _)| group);
     let others = CARD.iter().map(|info| info.name);
@@ -98,19 +110,26 @@ fn unknown_input(path: &str, key: &Key) -> crate::error::Error {
     )
 }
 
-/// Merges cards: of two statements about one input the later wins.
+/// Merges cards: of two statements about one input, alone or with others, the later wins.
 pub(super) fn merge(cards: Vec<Card>) -> Card {
     let mut merged = Card::default();
     for card in cards {
-        for statement in &card.statements {
+        let stated = card.statements.iter().map(|statement| statement.target);
+        let drawn = card.together.iter().flat_map(|together| &together.members);
+        for target in stated.chain(drawn.map(|(target, _)| *target)) {
             // The gap as a whole replaces what earlier cards said of single gaps.
-            merged.statements.retain(|earlier| {
-                earlier.target != statement.target
-                    && !(statement.target.surface.is_none()
-                        && earlier.target.parameter == statement.target.parameter)
-            });
+            let replaced = |earlier: Target| {
+                earlier == target
+                    || target.surface.is_none() && earlier.parameter == target.parameter
+            };
+            merged.statements.retain(|earlier| !replaced(earlier.target));
+            for together in &mut merged.together {
+                together.members.retain(|(earlier, _)| !replaced(*earlier));
+            }
         }
+        merged.together.retain(|together| !together.members.is_empty());
         merged.statements.extend(card.statements);
+        merged.together.extend(card.together);
         merged.correlations.extend(card.correlations);
     }
     merged

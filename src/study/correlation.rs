@@ -4,12 +4,13 @@ use super::card::parameter_path;
 use super::document::{Node, Value};
 use super::place::Place;
 use super::read::{self, Section};
+use super::together::already_dependent;
 use super::vocabulary::CORRELATION;
 use super::{Correlation, Input};
 use crate::error::{Error, Result};
 use crate::physics::design::Target;
 use crate::physics::parameters::{PARAMETERS, Parameter};
-use crate::uncertainty::{Copula, Joint, Marginal, Measure, Refusal, Statement};
+use crate::uncertainty::{Copula, Joint, JointSample, Marginal, Measure, Refusal, Statement};
 use crate::units::Quantity;
 use crate::units::number;
 use crate::units::spelling::nearest;
@@ -40,11 +41,20 @@ struct Placed {
 /// # Errors
 /// A diagnostic: an unknown key or input, a coefficient outside (−1, 1), two statements about a
 /// pair, coefficients that no distribution can have together.
-pub(super) fn joint(inputs: &[Input], statements: &[Node]) -> Result<(Joint, Vec<Correlation>)> {
+pub(super) fn joint(
+    inputs: &[Input],
+    samples: Vec<JointSample>,
+    statements: &[Node],
+) -> Result<(Joint, Vec<Correlation>)> {
     let mut by_pair: BTreeMap<(usize, usize), Placed> = BTreeMap::new();
     for statement in statements {
         for new in read_statement(inputs, statement)? {
             let pair = new.correlation.between;
+            let drawn = |k: &&usize| samples.iter().any(|sample| sample.inputs().contains(k));
+            if let Some(&k) = [pair.0, pair.1].iter().find(drawn) {
+                let path = inputs.get(k).map_or(String::new(), |input| input.target.path());
+                return Err(already_dependent(statement, &path));
+            }
             // A later card wins, as it does for inputs; within one card a pair is stated once.
             if by_pair.get(&pair).is_some_and(|old| Arc::ptr_eq(&old.place.text, &new.place.text)) {
                 let problem = "this pair has a correlation already";
@@ -56,7 +66,7 @@ pub(super) fn joint(inputs: &[Input], statements: &[Node]) -> Result<(Joint, Vec
     let placed: Vec<Placed> = by_pair.into_values().collect();
     let marginals: Vec<Marginal> = inputs.iter().map(|input| input.marginal.clone()).collect();
     if placed.is_empty() {
-        return Ok((Joint::independent(marginals), Vec::new()));
+        return Ok((Joint::independent(marginals).with_samples(samples)?, Vec::new()));
     }
     let statements: Vec<Statement> = placed
         .iter()
@@ -68,7 +78,7 @@ pub(super) fn joint(inputs: &[Input], statements: &[Node]) -> Result<(Joint, Vec
         .collect();
     let copula = Copula::new(inputs.len(), &statements)
         .map_err(|refusal| blame(inputs, &placed, refusal))?;
-    let joint = Joint::new(marginals, Some(copula))?;
+    let joint = Joint::new(marginals, Some(copula))?.with_samples(samples)?;
     Ok((joint, placed.into_iter().map(|placed| placed.correlation).collect()))
 }
 

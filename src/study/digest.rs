@@ -12,11 +12,12 @@ impl Study {
         of_text(&self.canonical_text())
     }
 
-    /// Name and SHA-256 of each raw text: the study file, then its cards.
+    /// Name and SHA-256 of each raw text: the study file, then its cards, then files of joint samples.
     pub fn file_digests(&self) -> Vec<(String, String)> {
         let study = (self.origin.clone(), of_text(&self.study_text));
         let cards = self.card_texts.iter().map(|(name, text)| (name.clone(), of_text(text)));
-        std::iter::once(study).chain(cards).collect()
+        let samples = self.drawn_together.iter().map(|t| (t.file.clone(), t.sha256.clone()));
+        std::iter::once(study).chain(cards).chain(samples).collect()
     }
 
     /// The text of which [`Study::digest`] is the digest: one statement a line, numbers exact.
@@ -44,6 +45,9 @@ impl Study {
             let (a, b) = correlation.between;
             let (name, value) = (correlation.measure.name(), correlation.measure.value());
             lines.push(format!("correlation {a} {b} {name} {value:e}"));
+        }
+        for together in &self.drawn_together {
+            lines.push(format!("together {:?} rows={}", together.inputs, together.rows));
         }
         for limit in &self.limits {
             let kind = match limit.kind {
@@ -110,7 +114,12 @@ fn cost_text(cost: &TighteningCost) -> Option<String> {
 
 /// SHA-256 of a text, in hexadecimal.
 pub(super) fn of_text(text: &str) -> String {
-    hexadecimal(&Sha256::digest(text.as_bytes()))
+    of_bytes(text.as_bytes())
+}
+
+/// SHA-256 of bytes, in hexadecimal.
+pub(super) fn of_bytes(bytes: &[u8]) -> String {
+    hexadecimal(&Sha256::digest(bytes))
 }
 
 /// SHA-256 of numbers, bit for bit and in their order, in hexadecimal.

@@ -4,6 +4,7 @@ use super::document::{Node, Value};
 use super::law::check_possible;
 use super::read;
 use super::sections::possible_range;
+use super::together::SampleColumn;
 use crate::error::{Error, Result};
 use crate::physics::parameters::ParameterInfo;
 
@@ -70,33 +71,52 @@ fn filed(
 
 /// The numbers of `column` in a CSV text whose first line names its columns.
 ///
-/// Fields are separated by commas and may be quoted; empty lines are skipped; numbers are SI.
-///
 /// # Errors
 /// What is wrong, with the line: no such column (with those there are), not a finite number, no numbers.
 pub(super) fn column(text: &str, column: &str) -> std::result::Result<Vec<f64>, String> {
+    let mut columns = table(text);
+    match columns.iter().position(|(name, _)| name == column) {
+        Some(place) => columns.swap_remove(place).1,
+        None => {
+            let names: Vec<String> = columns.into_iter().map(|(name, _)| name).collect();
+            Err(format!("it has no such column, only {}", shortened(&names.join(", "))))
+        }
+    }
+}
+
+/// The columns of a CSV text whose first line names them, each with its numbers or why it holds none.
+///
+/// Fields are separated by commas and may be quoted; empty lines are skipped; numbers are SI unless the
+/// reader of a column knows better.
+pub(super) fn table(text: &str) -> Vec<SampleColumn> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let header = lines.next().map(|(_, line)| fields(line)).unwrap_or_default();
-    let Some(place) = header.iter().position(|name| name == column) else {
-        return Err(format!("it has no such column, only {}", shortened(&header.join(", "))));
-    };
-    let mut values = Vec::new();
+    let mut columns: Vec<SampleColumn> =
+        header.into_iter().map(|name| (name, Ok(Vec::new()))).collect();
     for (number, line) in lines {
-        let fields = fields(line);
-        let field = fields.get(place).map_or("", String::as_str);
-        match field.parse::<f64>() {
-            Ok(value) if value.is_finite() => values.push(value),
-            _ => {
-                return Err(format!(
-                    "line {}: \"{}\" is not a finite number",
-                    number + 1,
-                    shortened(field)
-                ));
+        let mut fields = fields(line).into_iter();
+        for (_, values) in &mut columns {
+            let field = fields.next().unwrap_or_default();
+            let Ok(numbers) = values else { continue };
+            match field.parse::<f64>() {
+                Ok(value) if value.is_finite() => numbers.push(value),
+                _ => {
+                    *values = Err(format!(
+                        "line {}: \"{}\" is not a finite number",
+                        number + 1,
+                        shortened(&field)
+                    ));
+                }
             }
         }
     }
-    if values.is_empty() { Err("it holds no numbers".to_owned()) } else { Ok(values) }
+    for (_, values) in &mut columns {
+        if values.as_ref().is_ok_and(Vec::is_empty) {
+            *values = Err("it holds no numbers".to_owned());
+        }
+    }
+    columns
 }
 
 /// The fields of a line, without their quotes.

@@ -1,14 +1,17 @@
 //! From the statements of cards to the uncertain inputs of a study.
 
 use super::card::{Card, Statement};
+use super::digest::of_numbers;
 use super::empirical::ColumnReader;
 use super::law::understand;
 use super::read;
 use super::sections::check_surface;
+use super::together::Together;
 use super::{Input, Known, TighteningCost, tighten};
 use crate::error::Result;
 use crate::physics::design::{Design, Target};
 use crate::physics::parameters::Parameter;
+use crate::uncertainty::{Law, Marginal};
 
 /// The inputs of a card for a design, in the order of [`Target`].
 ///
@@ -31,13 +34,40 @@ pub(super) fn inputs(
         for surface in 0..design.surfaces() {
             let target = Target::gap(surface);
             // A surface with a statement of its own keeps that.
-            if card.statements.iter().all(|other| other.target != target) {
+            let drawn = card.together.iter().flat_map(|together| &together.members);
+            let own = card.statements.iter().map(|other| other.target);
+            if own.chain(drawn.map(|(other, _)| *other)).all(|other| other != target) {
                 inputs.push(Input { target, ..template.clone() });
             }
         }
     }
+    for together in &card.together {
+        for (target, values) in &together.members {
+            check_surface(*target, design, &together.key)?;
+            inputs.push(member(together, *target, values)?);
+        }
+    }
     inputs.sort_by_key(|input| input.target);
     Ok(inputs)
+}
+
+/// One input of those that are drawn together.
+fn member(together: &Together, target: Target, values: &[f64]) -> Result<Input> {
+    let law = Law::empirical(values.to_vec(), None).map_err(|_| {
+        let problem = format!("{} has one and the same value in every row", target.path());
+        let expected = "expected values that differ: a constant belongs in [design]";
+        together.key.place.error(problem, expected)
+    })?;
+    Ok(Input {
+        target,
+        marginal: Marginal::untruncated(law),
+        known: together.known,
+        source: together.source.clone(),
+        group: Some(together.group.clone()),
+        cost: together.cost.clone(),
+        law_text: together.law_text(),
+        law_canonical: format!("together values={}", of_numbers(values)),
+    })
 }
 
 /// One statement as an input, and whether it stands for one on each surface.

@@ -1,7 +1,9 @@
 //! Reading studies: the only place where the study floor touches a file.
 
 use super::assemble::{Files, NamedText, assemble};
+use super::digest::of_bytes;
 use super::empirical;
+use super::together::{SampleColumn, SampleFile};
 use super::{Override, Study};
 use crate::error::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -25,17 +27,17 @@ impl Study {
     /// [`Error::File`] if the study file cannot be read; a [`crate::error::Diagnostic`] for every
     /// mistake in it, a card that cannot be read included.
     pub fn load(path: Option<&Path>, overrides: &[Override]) -> Result<Study> {
-        Study::load_with(path, overrides, refuse_parquet)
+        Study::load_with(path, overrides, Parquet { column: refuse_column, table: refuse_table })
     }
 
-    /// [`Study::load`] with a reader of Parquet columns, for empirical laws whose data is in such files.
+    /// [`Study::load`] with a reader of Parquet files, for the data of empirical laws and joint samples.
     ///
     /// # Errors
     /// As [`Study::load`].
     pub fn load_with(
         path: Option<&Path>,
         overrides: &[Override],
-        parquet: ParquetColumn,
+        parquet: Parquet,
     ) -> Result<Study> {
         match path {
             None => {
@@ -66,7 +68,7 @@ impl Study {
 struct Disk {
     directory: PathBuf,
     embedded: bool,
-    parquet: ParquetColumn,
+    parquet: Parquet,
 }
 
 impl Files for Disk {
@@ -90,15 +92,62 @@ impl Files for Disk {
     ) -> std::result::Result<Vec<f64>, String> {
         read_column(card, name, column, self.parquet)
     }
+
+    fn sample(&mut self, card: &str, name: &str) -> std::result::Result<SampleFile, String> {
+        read_sample(card, name, self.parquet)
+    }
 }
 
-/// Reads a column of numbers from a Parquet file; a failure is its reason, in a few words. Only a higher
-/// floor knows Parquet, so it hands the reader in.
-pub type ParquetColumn = fn(&Path, &str) -> std::result::Result<Vec<f64>, String>;
+/// What reads Parquet files; a failure is its reason, in a few words. Only a higher floor knows Parquet, so
+/// it hands the reader in.
+#[derive(Debug, Clone, Copy)]
+pub struct Parquet {
+    /// The numbers of one column.
+    pub column: fn(&Path, &str) -> std::result::Result<Vec<f64>, String>,
+    /// All columns in their order.
+    pub table: fn(&Path) -> std::result::Result<Vec<SampleColumn>, String>,
+}
 
-/// The reader where there is none.
-fn refuse_parquet(_: &Path, _: &str) -> std::result::Result<Vec<f64>, String> {
-    Err("Parquet is not read here: export the column as CSV".to_owned())
+const NO_PARQUET: &str = "Parquet is not read here: export the column as CSV";
+
+/// The readers where there are none.
+fn refuse_column(_: &Path, _: &str) -> std::result::Result<Vec<f64>, String> {
+    Err(NO_PARQUET.to_owned())
+}
+
+fn refuse_table(_: &Path) -> std::result::Result<Vec<SampleColumn>, String> {
+    Err(NO_PARQUET.to_owned())
+}
+
+/// Where the file `name` of the card called `card` is: beside the card, or in the working directory for an
+/// embedded one.
+fn beside(card: &str, name: &str) -> PathBuf {
+    let directory = Path::new(card).parent().filter(|_| !card.ends_with(" (embedded)"));
+    directory.unwrap_or(Path::new("")).join(name)
+}
+
+fn is_parquet(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "parquet")
+}
+
+/// The joint samples in the CSV or Parquet file `name` that the card called `card` names: found relative to
+/// the card, or to the working directory for an embedded one.
+///
+/// # Errors
+/// Why the file cannot be read, in a few words.
+pub fn read_sample(
+    card: &str,
+    name: &str,
+    parquet: Parquet,
+) -> std::result::Result<SampleFile, String> {
+    let path = beside(card, name);
+    let bytes = read_bytes(&path)?;
+    let sha256 = of_bytes(&bytes);
+    let columns = match is_parquet(&path) {
+        true => (parquet.table)(&path)?,
+        false => empirical::table(&as_text(bytes)?),
+    };
+    Ok(SampleFile { sha256, columns })
 }
 
 /// The numbers of a column of the CSV or Parquet file `name` that the card called `card` names: found relative to
@@ -110,24 +159,30 @@ pub fn read_column(
     card: &str,
     name: &str,
     column: &str,
-    parquet: ParquetColumn,
+    parquet: Parquet,
 ) -> std::result::Result<Vec<f64>, String> {
-    let directory = Path::new(card).parent().filter(|_| !card.ends_with(" (embedded)"));
-    let path = directory.unwrap_or(Path::new("")).join(name);
-    if path.extension().is_some_and(|ending| ending == "parquet") {
-        return parquet(&path, column);
+    let path = beside(card, name);
+    if is_parquet(&path) {
+        return (parquet.column)(&path, column);
     }
     empirical::column(&read_text(&path)?, column)
 }
 
 /// The text of a file, or why there is none.
 pub(super) fn read_text(path: &Path) -> std::result::Result<String, String> {
-    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
+    as_text(read_bytes(path)?)
+}
+
+fn read_bytes(path: &Path) -> std::result::Result<Vec<u8>, String> {
+    std::fs::read(path).map_err(|error| match error.kind() {
         std::io::ErrorKind::NotFound => "no such file".to_owned(),
         std::io::ErrorKind::IsADirectory => "it is a directory".to_owned(),
         std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
         _ => error.to_string(),
-    })?;
+    })
+}
+
+fn as_text(bytes: Vec<u8>) -> std::result::Result<String, String> {
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         format!("it is not UTF-8 text from byte {valid} on")

@@ -22,6 +22,7 @@ mod resolved;
 pub mod schema;
 mod sections;
 mod tighten;
+mod together;
 mod until;
 mod vocabulary;
 
@@ -31,11 +32,12 @@ use crate::sampling;
 use crate::uncertainty::{Joint, Marginal, Measure};
 
 pub use assemble::{Files, NamedText, assemble};
-pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, ParquetColumn, read_column};
+pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, Parquet, read_column, read_sample};
 pub use measured_run::MeasuredRun;
 pub use overrides::Override;
 pub use resolved::{ResolvedParameter, UncertainLaw};
 pub use tighten::{DesignRange, Grade, TightenPlan, TighteningCost, TradePlan};
+pub use together::{SampleColumn, SampleFile};
 pub use until::StoppingPlan;
 
 /// A study, resolved: every value in SI, every name known.
@@ -54,6 +56,8 @@ pub struct Study {
     pub joint: Joint,
     /// The statements that the joint distribution's dependence was made from.
     pub correlations: Vec<Correlation>,
+    /// The files from whose rows several inputs are drawn together.
+    pub drawn_together: Vec<DrawnTogether>,
     /// What a descent must not breach, in the order of [`OutcomeQuantity`], upper limit first.
     pub limits: Vec<Limit>,
     /// What the verdict is held against.
@@ -144,6 +148,21 @@ pub struct Correlation {
     pub measure: Measure,
     /// Where it comes from.
     pub source: String,
+}
+
+/// Inputs that are drawn together from the rows of a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DrawnTogether {
+    /// What the sample is called as one factor.
+    pub name: String,
+    /// The file as the card names it.
+    pub file: String,
+    /// SHA-256 of the file, in hexadecimal.
+    pub sha256: String,
+    /// Number of rows, each equally likely.
+    pub rows: usize,
+    /// Places of the inputs in [`Study::inputs`], ascending.
+    pub inputs: Vec<usize>,
 }
 
 /// Which side of a limit is allowed.

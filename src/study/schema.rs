@@ -7,8 +7,8 @@ use super::Known;
 use super::correlation::MEASURES;
 use super::laws::{Kind, LAWS, LawInfo, TERMS, keys_of};
 use super::vocabulary::{
-    CARD, CORRELATION, GRADE, INPUT, KeyInfo, LIMIT, METHODS, NUMERICS, RELIABILITY, REQUIREMENT,
-    SAMPLING, SENSITIVITY, STUDY, TIGHTEN, TRADE, UNTIL,
+    CARD, CORRELATION, GRADE, INPUT, JOINT, KeyInfo, LIMIT, METHODS, NUMERICS, RELIABILITY,
+    REQUIREMENT, SAMPLING, SENSITIVITY, STUDY, TIGHTEN, TRADE, UNTIL,
 };
 use crate::descent::{Model, OutcomeQuantity};
 use crate::physics::parameters::{PARAMETERS, Parameter, ParameterInfo};
@@ -90,6 +90,7 @@ pub fn card() -> Value {
     for info in CARD {
         let value = match info.name {
             "correlation" => json!({ "type": "array", "items": correlation() }),
+            "joint" => json!({ "type": "array", "items": joint() }),
             _ => text("HABE reel-down brake, as designed"),
         };
         properties.insert(info.name.to_owned(), described(value, info.description));
@@ -396,6 +397,19 @@ fn law_rule(law: &LawInfo, names: &[&str]) -> Value {
             "propertyNames": { "enum": allowed },
         },
     })
+}
+
+/// Inputs that are drawn together.
+fn joint() -> Value {
+    let value = |info: &KeyInfo| match info.name {
+        "file" => text("posterior.parquet"),
+        "columns" => paths(|_| text("shear_factor"), text("gap_3_m")),
+        "sha256" => json!({ "type": "string", "pattern": "^\\s*[0-9a-fA-F]{64}\\s*$" }),
+        "known" => json!({ "enum": Known::ALL.map(Known::name) }),
+        "cost" => cost(),
+        _ => text("posterior of the truck tests"),
+    };
+    table(JOINT, value, &["file", "known", "source"])
 }
 
 fn correlation() -> Value {

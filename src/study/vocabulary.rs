@@ -99,6 +99,27 @@ pub(super) static CARD: &[KeyInfo] = &[
     key("title", "what the card is called"),
     key("description", "what the card is about"),
     key("correlation", "dependence between two inputs, as a Gaussian copula"),
+    key(
+        "joint",
+        "inputs that are drawn together from the rows of a file, such as a posterior sample",
+    ),
+];
+
+/// Keys of a joint sample.
+pub(super) static JOINT: &[KeyInfo] = &[
+    key("file", "CSV or Parquet file of equally likely rows, relative to the card"),
+    key(
+        "columns",
+        "the column of each input, by dotted path; without it, every column named by a dotted path",
+    ),
+    key("sha256", "SHA-256 of the file, which is refused if it is another"),
+    key("known", "when the values become known"),
+    key("source", "where the sample comes from"),
+    key("group", "what the sample is called as one factor of sensitivities"),
+    key(
+        "cost",
+        "what tightening costs: a number for each halving of the spread, a list of grades, or \"none\"",
+    ),
 ];
 
 /// Keys of an input that do not belong to its law.

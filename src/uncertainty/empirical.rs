@@ -183,14 +183,32 @@ impl Empirical {
         (mean, variance.sqrt())
     }
 
-    /// The same law with every value sent through an increasing `map`.
+    /// The same law with every value sent through an increasing `map`; values that fall together are pooled.
     ///
     /// # Errors
-    /// If two values fall together or one is no longer finite.
+    /// If all values fall together or one is no longer finite.
     pub(super) fn mapped(&self, map: impl Fn(f64) -> f64) -> Result<Self> {
-        let values: Vec<f64> = self.values.iter().map(|&x| map(x)).collect();
-        if values.windows(2).all(|pair| pair[0] < pair[1]) && values.iter().all(|x| x.is_finite()) {
-            Ok(Empirical { values, ..self.clone() })
+        let mut mapped = Empirical { values: Vec::new(), below: Vec::new(), above: Vec::new() };
+        let last = self.values.len() - 1;
+        for (k, &x) in self.values.iter().enumerate() {
+            let value = map(x);
+            match mapped.values.last() {
+                // The greatest value ends the law, whichever others it has fallen together with.
+                Some(&before) if before >= value && k == last => {
+                    mapped.values.pop();
+                    mapped.below.pop();
+                    mapped.above.pop();
+                }
+                Some(&before) if before >= value => continue,
+                _ => {}
+            }
+            mapped.values.push(value);
+            mapped.below.push(self.below[k]);
+            mapped.above.push(self.above[k]);
+        }
+        let increasing = mapped.values.windows(2).all(|pair| pair[0] < pair[1]);
+        if mapped.values.len() > 1 && increasing && mapped.values.iter().all(|x| x.is_finite()) {
+            Ok(mapped)
         } else {
             Err(Error::argument("the observations of an empirical law would no longer be distinct"))
         }

@@ -11,4 +11,5 @@ mod program;
 mod published;
 mod readers;
 mod replaying;
+mod together;
 mod verdicts;

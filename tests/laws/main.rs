@@ -2,6 +2,7 @@
 
 mod copula;
 mod families;
+mod joint_sample;
 mod properties;
 mod published;
 mod reference;

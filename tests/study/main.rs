@@ -7,4 +7,5 @@ mod overrides;
 mod schema;
 mod shipped;
 mod sources;
+mod together;
 mod units;

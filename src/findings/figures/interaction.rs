@@ -4,6 +4,7 @@ use crate::campaign::{self, Record};
 use crate::error::Result;
 use crate::findings::drivers::{DriverOutput, DriversFinding};
 use crate::numerics::columns::Columns;
+use crate::sensitivity::pick_freeze::Factor;
 use crate::study::Study;
 use serde::Serialize;
 
@@ -50,10 +51,15 @@ pub(super) fn interaction(
     if study.limits.is_empty() {
         return Ok(Err("the study states no limit".to_owned()));
     }
-    let Some((output, [first, second])) = strongest(study, drivers) else {
+    let mut factors = campaign::factors(study);
+    // The mean of different quantities has no meaning.
+    factors.retain(|factor| {
+        let parameter = |&j: &usize| study.inputs[j].target.parameter;
+        factor.columns.windows(2).all(|pair| parameter(&pair[0]) == parameter(&pair[1]))
+    });
+    let Some((output, [first, second])) = strongest(study, drivers, &factors) else {
         return Ok(Err("no two inputs have a sensitivity index".to_owned()));
     };
-    let factors = campaign::factors(study);
     let columns_of = |name: &str| factors.iter().find(|factor| factor.name == name);
     let (Some(x), Some(y)) = (columns_of(first), columns_of(second)) else {
         return Ok(Err("no two inputs have a sensitivity index".to_owned()));
@@ -89,6 +95,7 @@ pub(super) fn interaction(
 fn strongest<'a>(
     study: &Study,
     drivers: &'a DriversFinding,
+    factors: &[Factor],
 ) -> Option<(&'a DriverOutput, [&'a str; 2])> {
     let limited = study.limits.iter().map(|limit| limit.outcome.name());
     std::iter::once("breach.any").chain(limited).find_map(|name| {
@@ -97,6 +104,7 @@ fn strongest<'a>(
             .factors
             .iter()
             .filter(|factor| !factor.grouped)
+            .filter(|factor| factors.iter().any(|shown| shown.name == factor.name))
             .filter_map(|factor| Some((factor.indices.total.value?, factor.name.as_str())))
             .collect();
         factors.sort_by(|a, b| b.0.total_cmp(&a.0));

@@ -1,0 +1,319 @@
+//! `[[joint]]`: inputs that are drawn together, row by row, from a file of joint samples.
+
+use super::assemble::Files;
+use super::card::{Card, parameter_path, unknown_input};
+use super::document::{Key, Node, Value};
+use super::read::{self, Section};
+use super::sections::possible_range;
+use super::vocabulary::JOINT;
+use super::{Known, TighteningCost, tighten};
+use crate::error::{Error, Result};
+use crate::physics::design::Target;
+use crate::physics::parameters::{PARAMETERS, Parameter};
+use crate::units;
+use crate::units::spelling::nearest;
+
+const COLUMNS_EXAMPLE: &str = "{ \"fluid.shear_factor\" = \"shear_factor\" }";
+
+/// A column of numbers, or why it holds none, in a few words.
+pub type SampleColumn = (String, std::result::Result<Vec<f64>, String>);
+
+/// A file of joint samples, read.
+#[derive(Debug, Clone)]
+pub struct SampleFile {
+    /// SHA-256 of the file, in hexadecimal.
+    pub sha256: String,
+    /// Its columns in their order, by the names in its header.
+    pub columns: Vec<SampleColumn>,
+}
+
+/// Inputs that a card draws together.
+#[derive(Debug, Clone)]
+pub(super) struct Together {
+    /// Every input with its values, SI, one a row.
+    pub members: Vec<(Target, Vec<f64>)>,
+    pub known: Known,
+    pub source: String,
+    pub group: String,
+    pub cost: TighteningCost,
+    pub file: String,
+    pub sha256: String,
+    /// Columns of the file that no input is drawn from, when the card does not name the columns.
+    pub unused: Vec<String>,
+    /// What a complaint about an input points to.
+    pub key: Key,
+}
+
+impl Together {
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.members.first().map_or(0, |(_, values)| values.len())
+    }
+
+    /// What the law of a member is called.
+    pub fn law_text(&self) -> String {
+        let others = self.members.len() - 1;
+        let with = match others {
+            0 => String::new(),
+            1 => "together with another input ".to_owned(),
+            _ => format!("together with {others} other inputs "),
+        };
+        format!("drawn {with}from the {} rows of {}", self.rows(), self.file)
+    }
+}
+
+/// Reads the `[[joint]]` statements of a card.
+///
+/// # Errors
+/// A diagnostic: an unknown key or input, a file that cannot be read or is another one, a column that is
+/// not there, an impossible value, an input that the card states twice.
+pub(super) fn read(card: &Card, files: &mut dyn Files) -> Result<Vec<Together>> {
+    let mut found: Vec<Together> = Vec::new();
+    for statement in &card.joints {
+        let together = read_one(statement, files)?;
+        for (target, _) in &together.members {
+            let drawn = found.iter().flat_map(|other| &other.members).any(|(t, _)| t == target);
+            if drawn || card.statements.iter().any(|other| other.target == *target) {
+                let problem = format!("{} is given twice in one card", target.path());
+                let expected = "expected each input once: in a [[joint]] or with a law of its own \
+                                (a later card may replace either)";
+                return Err(together.key.place.error(problem, expected));
+            }
+        }
+        found.push(together);
+    }
+    Ok(found)
+}
+
+fn read_one(statement: &Node, files: &mut dyn Files) -> Result<Together> {
+    let entries = read::table(statement, "file = \"posterior.parquet\"")?;
+    let section = Section::new("[[joint]]", &statement.place, entries, JOINT)?;
+    let file = section.require("file", "\"posterior.parquet\"")?;
+    let name = read::string(file, "the name of a file of joint samples")?;
+    let content = files.sample(&file.place.text.origin, name).map_err(|reason| {
+        let expected =
+            "expected a CSV or Parquet file, relative to the card, with one column for each input";
+        file.place.error(format!("cannot read {name}: {reason}"), expected)
+    })?;
+    if let Some(node) = section.get("sha256") {
+        let stated = read::string(node, "the SHA-256 of the file, in hexadecimal")?;
+        if !stated.trim().eq_ignore_ascii_case(&content.sha256) {
+            let problem = format!("{name} is another file: its SHA-256 is {}", content.sha256);
+            let help = "if the new content is meant, state its SHA-256".to_owned();
+            let expected = "expected the file that the card was written for";
+            return Err(node.place.error_with(problem, expected, Some(help)));
+        }
+    }
+    let (chosen, unused) = match section.get("columns") {
+        Some(node) => (named(node, file, name, &content)?, Vec::new()),
+        None => by_path(file, name, &content)?,
+    };
+    let mut members = Vec::with_capacity(chosen.len());
+    for Chosen { target, column, unit, place } in chosen {
+        let values = in_si(target, column, unit).map_err(|reason| {
+            place.error(format!("{name}: {reason}"), possible_range(target.parameter))
+        })?;
+        members.push((target, values));
+    }
+    members.sort_by_key(|(target, _)| *target);
+    let rows = members.first().map_or(0, |(_, values)| values.len());
+    if rows < 2 || members.iter().any(|(_, values)| values.len() != rows) {
+        let problem = format!("{name} holds no joint sample");
+        return Err(file.place.error(problem, "expected two rows at least, all of them complete"));
+    }
+    let known_names = Known::ALL.map(Known::name);
+    let known = section.require("known", "\"never\": when the values become known")?;
+    let known = read::choice(known, "time of knowledge", &known_names, Known::from_name)?;
+    let source = section.require("source", "\"…\": where the sample comes from")?;
+    let source = read::string(source, "where the sample comes from")?.trim().to_owned();
+    let group = match section.get("group") {
+        Some(node) => read::string(node, "the name of a group")?.trim().to_owned(),
+        None => format!("joint sample of {} parameters ({name})", members.len()),
+    };
+    let cost = section.get("cost").map_or(Ok(TighteningCost::default()), tighten::cost)?;
+    let key = Key { name: name.to_owned(), place: file.place.clone() };
+    let (file, sha256) = (name.to_owned(), content.sha256);
+    Ok(Together { members, known, source, group, cost, file, sha256, unused, key })
+}
+
+/// A column that an input is drawn from.
+struct Chosen<'f> {
+    target: Target,
+    column: &'f SampleColumn,
+    unit: Option<&'f str>,
+    place: super::place::Place,
+}
+
+/// "fluid.shear_factor [m²/s]" is a name and a unit; without a unit the numbers are SI.
+fn name_and_unit(header: &str) -> (&str, Option<&str>) {
+    let inside = header.trim().strip_suffix(']').and_then(|rest| rest.rsplit_once('['));
+    match inside {
+        // brake.gap[3] is a path, not a unit.
+        Some((name, unit)) if !unit.bytes().all(|byte| byte.is_ascii_digit()) => {
+            (name.trim(), Some(unit.trim()))
+        }
+        _ => (header.trim(), None),
+    }
+}
+
+/// The columns that the card names for each input.
+fn named<'f>(
+    node: &Node,
+    file: &Node,
+    name: &str,
+    content: &'f SampleFile,
+) -> Result<Vec<Chosen<'f>>> {
+    let mut chosen: Vec<Chosen<'f>> = Vec::new();
+    let mut pending = vec![(String::new(), node)];
+    while let Some((prefix, node)) = pending.pop() {
+        for (key, child) in read::table(node, COLUMNS_EXAMPLE)? {
+            let path =
+                if prefix.is_empty() { key.name.clone() } else { format!("{prefix}.{}", key.name) };
+            let target = match parameter_path(&path) {
+                Some(target) => target,
+                None if matches!(child.value, Value::Table(_)) => {
+                    pending.push((path, child));
+                    continue;
+                }
+                None => return Err(unknown_input(&path, key)),
+            };
+            check_continuous(target, key)?;
+            if chosen.iter().any(|other| other.target == target) {
+                let problem = format!("{path} is given twice");
+                return Err(key.place.error(problem, "expected each input once"));
+            }
+            let wanted = read::string(child, "the name of a column")?.trim();
+            let column = content
+                .columns
+                .iter()
+                .find(|(header, _)| header == wanted)
+                .or_else(|| content.columns.iter().find(|(h, _)| name_and_unit(h).0 == wanted));
+            let Some(column) = column else {
+                let headers = content.columns.iter().map(|(header, _)| header.as_str());
+                let help = nearest(wanted, headers.clone())
+                    .map(|near| format!("did you mean \"{near}\"?"));
+                let all: Vec<&str> = headers.take(12).collect();
+                let expected = format!("expected one of its columns: {}", all.join(", "));
+                let problem = format!("{name} has no column \"{wanted}\"");
+                return Err(child.place.error_with(problem, expected, help));
+            };
+            let unit = name_and_unit(&column.0).1;
+            chosen.push(Chosen { target, column, unit, place: child.place.clone() });
+        }
+    }
+    if chosen.is_empty() {
+        let expected = format!("expected columns = {COLUMNS_EXAMPLE}, or no such key");
+        return Err(file.place.error("no column is drawn from", expected));
+    }
+    Ok(chosen)
+}
+
+/// The columns whose names are design paths or what `reeldown` calls such columns itself, and the names of
+/// the others.
+fn by_path<'f>(
+    file: &Node,
+    name: &str,
+    content: &'f SampleFile,
+) -> Result<(Vec<Chosen<'f>>, Vec<String>)> {
+    let mut chosen: Vec<Chosen<'f>> = Vec::new();
+    let mut unused = Vec::new();
+    for column in &content.columns {
+        let (path, unit) = name_and_unit(&column.0);
+        let Some(target) = parameter_path(path).or_else(|| column_target(path)) else {
+            unused.push(column.0.clone());
+            continue;
+        };
+        let key = Key { name: path.to_owned(), place: file.place.clone() };
+        check_continuous(target, &key)?;
+        if chosen.iter().any(|other| other.target == target) {
+            let problem = format!("{name} has two columns of {}", target.path());
+            return Err(file.place.error(problem, "expected each input once"));
+        }
+        chosen.push(Chosen { target, column, unit, place: file.place.clone() });
+    }
+    if chosen.is_empty() {
+        let problem = format!("no column of {name} is named like an input");
+        let expected = format!(
+            "expected columns named by dotted path, such as thermal.fluid_capacity [J/K], or columns = \
+             {COLUMNS_EXAMPLE}"
+        );
+        return Err(file.place.error(problem, expected));
+    }
+    Ok((chosen, unused))
+}
+
+/// The target of a column named as in `outcomes.parquet`: `thermal_fluid_capacity_j_per_k`.
+fn column_target(name: &str) -> Option<Target> {
+    let whole = PARAMETERS.iter().map(|info| Target::whole(info.parameter));
+    whole.into_iter().find(|target| target.column() == name).or_else(|| {
+        let number = name.strip_prefix("brake_gap_")?.strip_suffix("_m")?;
+        let surface: usize = number.parse().ok()?;
+        Some(Target::gap(surface.checked_sub(1)?)).filter(|target| target.column() == name)
+    })
+}
+
+fn check_continuous(target: Target, key: &Key) -> Result<()> {
+    if target.parameter == Parameter::BrakeRotors {
+        let expected = "expected a continuous parameter: rotors are counted";
+        return Err(key.place.error("brake.rotors cannot be uncertain", expected));
+    }
+    Ok(())
+}
+
+/// The numbers of a column in SI, or why they are none.
+fn in_si(
+    target: Target,
+    column: &SampleColumn,
+    unit: Option<&str>,
+) -> std::result::Result<Vec<f64>, String> {
+    let info = target.parameter.info();
+    let (header, values) = column;
+    let values = values.as_ref().map_err(|reason| format!("column \"{header}\": {reason}"))?;
+    let mut converted = Vec::with_capacity(values.len());
+    for (row, &value) in values.iter().enumerate() {
+        let si = match unit.filter(|unit| !unit.is_empty() && *unit != "1" && *unit != "-") {
+            None => value,
+            Some(unit) => {
+                units::parse(&format!("{value} {unit}"), info.quantity).map_err(|error| {
+                    format!("column \"{header}\": {}, {}", error.problem, error.expected)
+                })?
+            }
+        };
+        if !info.admits(si) {
+            return Err(format!(
+                "row {} of column \"{header}\" is {value}, which is impossible for {}",
+                row + 1,
+                target.path()
+            ));
+        }
+        converted.push(si);
+    }
+    Ok(converted)
+}
+
+/// The correlation of an input that is drawn together with others.
+pub(super) fn already_dependent(node: &Node, path: &str) -> Error {
+    let problem = format!("{path} is drawn from a joint sample, which holds its dependence");
+    node.place.error(problem, "expected inputs with laws of their own")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn property_headers_name_inputs_and_units() {
+        assert_eq!(
+            name_and_unit("thermal.fluid_capacity [J/K]"),
+            ("thermal.fluid_capacity", Some("J/K"))
+        );
+        assert_eq!(name_and_unit("brake.gap[3]"), ("brake.gap[3]", None));
+        assert_eq!(name_and_unit("brake.gap[3] [in]"), ("brake.gap[3]", Some("in")));
+        assert_eq!(name_and_unit("fluid.shear_factor"), ("fluid.shear_factor", None));
+        assert_eq!(column_target("brake_gap_3_m"), Some(Target::gap(2)));
+        assert_eq!(column_target("brake_gap_0_m"), None);
+        let capacity = Target::whole(Parameter::from_path("thermal.fluid_capacity").unwrap());
+        assert_eq!(column_target("thermal_fluid_capacity_j_per_k"), Some(capacity));
+        assert_eq!(column_target("log_posterior"), None);
+    }
+}
