@@ -87,8 +87,9 @@ pub fn risk(study: &Study, brakes: &Columns, progress: &Progress) -> Result<Risk
         let mut breaches = 0;
         for row in k * FLIGHTS..(k + 1) * FLIGHTS {
             // A descent that could not be computed counts as a breach: it is the safe side.
-            let mut any = table.outcome(row).is_none();
-            if let Some(outcome) = table.outcome(row) {
+            let result = table.result(row);
+            let mut any = result.is_err();
+            if let Ok(outcome) = result {
                 for (limit, count) in study.limits.iter().zip(&mut limits) {
                     let breached = limit.margin(&outcome) < 0.0;
                     *count += f64::from(u8::from(breached));
