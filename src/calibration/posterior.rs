@@ -1,11 +1,13 @@
 //! Replicates of the posterior together: what they agree on, and whether they may be believed.
 
 use super::likelihood::LogLikelihood;
-use super::tempering::{self, Plan, Replicate};
+use super::tempering::{self, Plan, Replicate, Start};
 use crate::error::{Error, Result};
 use crate::numerics::elementary::{exp, ln};
 use serde::Serialize;
 
+/// The pilot's random stream.
+const PILOT: u32 = u32::MAX;
 /// Largest R̂ of a coordinate.
 pub const MOST_R_HAT: f64 = 1.05;
 /// Smallest effective sample size, all replicates together.
@@ -79,10 +81,13 @@ pub fn sample(target: &dyn LogLikelihood, plan: &Plan) -> Result<Posterior> {
             2 * target.dimension()
         )));
     }
+    let pilot = tempering::replicate(target, None, &plan.pilot(), PILOT)?;
+    let start = Start::about(&pilot)?;
     let replicates = (0..plan.replicates)
-        .map(|index| tempering::replicate(target, plan, index))
+        .map(|index| tempering::replicate(target, Some(&start), plan, index))
         .collect::<Result<Vec<_>>>()?;
-    let diagnosis = diagnose(&replicates);
+    let mut diagnosis = diagnose(&replicates);
+    diagnosis.evaluations += pilot.evaluations;
     Ok(Posterior { replicates, diagnosis })
 }
 

@@ -4,8 +4,8 @@
 //! the work is cut into batches of fixed size at fixed places, and whatever is summed is summed in the
 //! order of the samples, so that nothing depends on the number of threads.
 
-pub mod common_numbers;
 pub mod calibration;
+pub mod common_numbers;
 mod evaluate;
 pub mod known;
 mod limit_state;

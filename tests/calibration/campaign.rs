@@ -3,9 +3,9 @@
 //! The truth lies within the card of `distributions/habe.toml`, with two differences from the model that a calibration
 //! has to live with: the housing loses heat to the air, and each channel wanders about the model.
 
+use reeldown::calibration::noise::Noise;
 use reeldown::campaign::calibration::Channel;
 use reeldown::campaign::calibration::synthetic::{Instrument, Schedule, run};
-use reeldown::calibration::noise::Noise;
 use reeldown::descent::driven::Drive;
 use reeldown::error::Result;
 use reeldown::physics::design::{Design, Target};

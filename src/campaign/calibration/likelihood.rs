@@ -7,9 +7,7 @@
 
 use super::channel::Channel;
 use super::plan::{ChannelNoise, PlannedRun, Positive, SensorError};
-use crate::calibration::noise::{
-    Noise, NoiseColumns, add_ln_density, drawn_errors, whiten,
-};
+use crate::calibration::noise::{Noise, NoiseColumns, add_ln_density, drawn_errors, whiten};
 use crate::calibration::{LeastSquares, LogLikelihood, Whitened};
 use crate::descent::driven::{Prediction, Record, Settings, differentiate, predict_with};
 use crate::error::Result;
@@ -187,10 +185,7 @@ impl<'a> RigLikelihood<'a> {
                 let set = InstructionSet::best();
                 predict_with(set, record, &self.settings, &there, &mut predictions);
                 let mut predictions = predictions.into_iter();
-                brakes
-                    .iter()
-                    .map(|brake| brake.as_ref().and_then(|_| predictions.next()))
-                    .collect()
+                brakes.iter().map(|brake| brake.as_ref().and_then(|_| predictions.next())).collect()
             })
             .collect();
         parts.into_iter().flatten().collect()
@@ -205,9 +200,8 @@ impl<'a> RigLikelihood<'a> {
         }
         let inputs = self.inputs(&part);
         let mut values = vec![f64::NEG_INFINITY; rows.len()];
-        let brakes: Vec<(usize, Coefficients<f64>)> = (0..rows.len())
-            .filter_map(|k| Some((k, self.coefficients(&inputs.row(k))?)))
-            .collect();
+        let brakes: Vec<(usize, Coefficients<f64>)> =
+            (0..rows.len()).filter_map(|k| Some((k, self.coefficients(&inputs.row(k))?))).collect();
         let points: Vec<Vec<f64>> = brakes.iter().map(|(k, _)| part.row(*k)).collect();
         let points: Vec<&[f64]> = points.iter().map(Vec::as_slice).collect();
         let noises: Vec<[Vec<f64>; 3]> =
@@ -284,8 +278,11 @@ impl<'a> RigLikelihood<'a> {
                 design.set(self.targets[j], Dual::variable(inputs[j], j - first));
             }
             let mut brake = Coefficients::with_shear_thinning(&design, thinning);
-            brake.initial_temperature_k =
-                if n < last { Dual::variable(initial_k, n - first) } else { Real::constant(initial_k) };
+            brake.initial_temperature_k = if n < last {
+                Dual::variable(initial_k, n - first)
+            } else {
+                Real::constant(initial_k)
+            };
             let prediction = differentiate(record, &self.settings, &brake);
             for (c, channel) in channels.iter().enumerate() {
                 for (moment, reading) in prediction.readings.iter().enumerate() {

@@ -68,11 +68,7 @@ pub struct Calibration<'a> {
 ///
 /// # Errors
 /// Those of the plan.
-pub fn screen(
-    study: &Study,
-    runs: &[&MeasuredRun],
-    options: &Options,
-) -> Result<Vec<Screened>> {
+pub fn screen(study: &Study, runs: &[&MeasuredRun], options: &Options) -> Result<Vec<Screened>> {
     let planned = plan::planned(runs, study, options)?;
     let noise = plan::noise(&planned, options);
     let likelihood = RigLikelihood::new(study, planned, noise);
@@ -185,5 +181,16 @@ pub fn calibrate<'a>(
             (Some((before, after)), Some(next))
         }
     };
-    Ok(Calibration { likelihood, held_out, screened, fit, posterior, draws, inputs, checks, risk, next })
+    Ok(Calibration {
+        likelihood,
+        held_out,
+        screened,
+        fit,
+        posterior,
+        draws,
+        inputs,
+        checks,
+        risk,
+        next,
+    })
 }

@@ -81,14 +81,12 @@ pub fn next_tests(
         draws.iter().map(|row| columns.iter().map(|&j| row[j]).collect()).collect();
     let dependence = Dependence::new(&reduced, probits, own_variance)?;
     let d = likelihood.coordinates().len();
-    let mean: Vec<f64> = (0..d)
-        .map(|j| draws.iter().map(|row| row[j]).sum::<f64>() / draws.len() as f64)
-        .collect();
+    let mean: Vec<f64> =
+        (0..d).map(|j| draws.iter().map(|row| row[j]).sum::<f64>() / draws.len() as f64).collect();
     let planner = Planner { study, likelihood, columns, mean };
     let sd = dependence.sd();
-    let band = |sd: f64| {
-        [-NINETY_FIVE, NINETY_FIVE].map(|side| normal::cdf(dependence.mean + side * sd))
-    };
+    let band =
+        |sd: f64| [-NINETY_FIVE, NINETY_FIVE].map(|side| normal::cdf(dependence.mean + side * sd));
     let now = band(sd);
     let mut tests = Vec::new();
     for (name, detail, information) in planner.measurements()? {

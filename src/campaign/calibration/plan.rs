@@ -111,7 +111,8 @@ const SENSOR_SHARE: f64 = 0.01;
 /// temperature are those of the day.
 pub fn is_hardware(parameter: Parameter) -> bool {
     let path = parameter.info().path;
-    let belongs = ["brake.", "fluid.", "reel.", "thermal."].iter().any(|start| path.starts_with(start));
+    let belongs =
+        ["brake.", "fluid.", "reel.", "thermal."].iter().any(|start| path.starts_with(start));
     belongs && !matches!(parameter, Parameter::ReelInertia | Parameter::ThermalAirTemperature)
 }
 
@@ -132,11 +133,7 @@ pub fn predicted_channels(run: &MeasuredRun, drive: Drive) -> Vec<Channel> {
 ///
 /// # Errors
 /// A run with nothing to predict, or whose drive was not recorded.
-pub fn planned(
-    runs: &[&MeasuredRun],
-    study: &Study,
-    options: &Options,
-) -> Result<Vec<PlannedRun>> {
+pub fn planned(runs: &[&MeasuredRun], study: &Study, options: &Options) -> Result<Vec<PlannedRun>> {
     runs.iter().map(|run| planned_run(run, study, options)).collect()
 }
 

@@ -71,11 +71,8 @@ pub fn check(
     let step = (draws.len() / DRAWS).max(1);
     let chosen: Vec<Vec<f64>> = draws.iter().step_by(step).cloned().collect();
     let inputs = likelihood.inputs(&Columns::from_rows(&chosen));
-    let calibrated = likelihood
-        .runs()
-        .iter()
-        .enumerate()
-        .map(|(k, run)| (run, Start::Calibrated(k)));
+    let calibrated =
+        likelihood.runs().iter().enumerate().map(|(k, run)| (run, Start::Calibrated(k)));
     let others = held_out.iter().map(|run| (run, Start::Read));
     calibrated
         .chain(others)
@@ -188,11 +185,7 @@ fn check_run(
             check
         })
         .collect();
-    Ok(RunCheck {
-        name: run.name.clone(),
-        held_out: matches!(start, Start::Read),
-        channels,
-    })
+    Ok(RunCheck { name: run.name.clone(), held_out: matches!(start, Start::Read), channels })
 }
 
 /// The value below which a share `p` of sorted numbers lies, by linear interpolation.

@@ -143,7 +143,8 @@ fn driven(schedule: &Schedule, stream: &mut Stream) -> Result<Record> {
         .map(|&time| {
             let up = (time / START_S).min(1.0);
             let value = schedule.level * up * (1.0 + wobble);
-            wobble = keeps * wobble + share * (1.0 - keeps * keeps).sqrt() * standard_normal(stream);
+            wobble =
+                keeps * wobble + share * (1.0 - keeps * keeps).sqrt() * standard_normal(stream);
             value.max(0.0)
         })
         .collect();
