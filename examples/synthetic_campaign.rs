@@ -34,9 +34,22 @@ fn write() -> Result<(), String> {
     }
     std::fs::create_dir_all(&out).map_err(|why| why.to_string())?;
     let runs = campaign::runs(seed).map_err(|why| why.to_string())?;
-    for (name, text) in runs.into_iter().chain([("truth.toml", campaign::truth_text())]) {
+    for (name, text) in runs.into_iter().chain([("truth.toml", truth_text())]) {
         let path = out.join(name);
         std::fs::write(&path, text).map_err(|why| format!("{}: {why}", path.display()))?;
     }
     Ok(())
+}
+
+/// The truth as a table of design values, for a person and for `--set`.
+fn truth_text() -> String {
+    let mut text = "# What is true of the brake of this made-up campaign (examples/synthetic_campaign.rs).\n\n[design]\n"
+        .to_owned();
+    for (parameter, _, written) in campaign::TRUTH {
+        text += &format!("\"{}\" = \"{written}\"\n", parameter.info().path);
+    }
+    for (surface, gap) in campaign::GAPS.iter().enumerate() {
+        text += &format!("\"brake.gap[{}]\" = \"{:.4} in\"\n", surface + 1, gap * 1e-3);
+    }
+    text
 }
