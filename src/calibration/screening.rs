@@ -106,22 +106,19 @@ fn stuck(times_s: &[f64], values: &[f64]) -> Vec<Suspicion> {
 
 fn outliers(times_s: &[f64], values: &[f64]) -> Vec<Suspicion> {
     let bends: Vec<f64> =
-        values.windows(3).map(|three| three[1] - 0.5 * (three[0] + three[2])).collect();
-    let sizes: Vec<f64> = bends.iter().map(|bend| bend.abs()).collect();
-    let Some(usual) = median(&sizes) else { return Vec::new() };
+        values.windows(3).map(|three| (three[1] - 0.5 * (three[0] + three[2])).abs()).collect();
+    let Some(usual) = median(&bends) else { return Vec::new() };
     // The median of |N(0, 1)| is 0.6745; a channel of few digits has many equal neighbours.
     let scale = (usual / 0.674_489_750_196_081_7).max(1e-9 * values[0].abs());
     let mut found = Vec::new();
-    for (k, bend) in bends.iter().enumerate() {
-        let beside = [k.checked_sub(1), Some(k + 1)];
-        // A spike bends its neighbours half as much the other way: only the middle is named.
-        let largest = beside
-            .into_iter()
-            .flatten()
-            .filter_map(|other| sizes.get(other))
-            .all(|other| *other < bend.abs());
-        let deviations = bend.abs() / scale;
-        if deviations > OUTLYING && largest {
+    for (k, three) in values.windows(3).enumerate() {
+        // A spike stands off both its neighbours on the same side; where a ramp ends, one of them is level.
+        let (before, after) = (three[1] - three[0], three[1] - three[2]);
+        if before * after <= 0.0 {
+            continue;
+        }
+        let deviations = before.abs().min(after.abs()) / scale;
+        if deviations > OUTLYING {
             found.push(Suspicion::Outlier {
                 time_s: times_s[k + 1],
                 value: values[k + 1],

@@ -1,6 +1,7 @@
 //! Everything a report says, computed once, as one tree that serialises: what the Markdown shows, the
 //! JSON holds. Numbers are SI; the renderer chooses units.
 
+pub mod calibration;
 mod demonstration;
 pub mod derivatives;
 pub mod design_value;
