@@ -1,6 +1,7 @@
 //! What was typed, carried out: the only place that prints, and the only one that knows clap.
 
 mod arguments;
+mod calibrate;
 mod check;
 mod descend;
 mod describe;
@@ -63,6 +64,7 @@ fn carry_out(arguments: Arguments) -> Result<Ending> {
         None => run::run(&arguments.run),
         Some(Command::Run(run)) => run::run(&run),
         Some(Command::Descend(descend)) => descend::descend(&descend),
+        Some(Command::Calibrate(calibrate)) => calibrate::calibrate(&calibrate),
         Some(Command::Tighten(tighten)) => tighten::tighten(&tighten),
         Some(Command::Replay(replay)) => replay::replay(&replay),
         Some(Command::Check(check)) => check::check(&check),

@@ -1,5 +1,6 @@
 //! Findings as text and figures: a terminal summary, a Markdown and an HTML report, SVG. Returns strings; writes and prints nothing.
 
+mod calibration;
 mod driver_view;
 mod figures;
 mod figures_of_speech;
@@ -12,7 +13,10 @@ mod tighten;
 mod trade_view;
 mod view;
 
-pub use figures::{Figure, ReportFigures, figures, paper_figures};
+pub use calibration::{
+    calibrated_card, calibrated_laws, calibration_markdown, calibration_terminal,
+};
+pub use figures::{Figure, ReportFigures, calibration_figures, figures, paper_figures};
 pub use html::html;
 pub use markdown::markdown;
 pub use tables::table;

@@ -32,6 +32,7 @@ use crate::sampling;
 use crate::uncertainty::{Joint, Marginal, Measure};
 
 pub use assemble::{Files, NamedText, assemble};
+pub use digest::sha256;
 pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, Parquet, read_column, read_sample};
 pub use measured_run::MeasuredRun;
 pub use overrides::Override;

@@ -160,7 +160,8 @@ fn fitted(prior: &Marginal, values: &[f64]) -> Result<(&'static str, Vec<(&'stat
     let (wanted_mean, wanted_sd) = (mean, variance.sqrt());
     let (mut mean, mut sd) = (wanted_mean, wanted_sd);
     if low.is_finite() || high.is_finite() {
-        let widest = if low.is_finite() && high.is_finite() { 3.0 * (high - low) } else { f64::MAX };
+        let widest =
+            if low.is_finite() && high.is_finite() { 3.0 * (high - low) } else { f64::MAX };
         let end = |x: f64| x.is_finite().then_some(x);
         for _ in 0..ROUNDS {
             let law = Marginal::new(Law::normal(mean, sd)?, end(low), end(high))?;

@@ -229,7 +229,9 @@ pub fn calibration(
         checks: found
             .checks
             .iter()
-            .flat_map(|run| run.channels.iter().map(|channel| check(&run.name, run.held_out, channel)))
+            .flat_map(|run| {
+                run.channels.iter().map(|channel| check(&run.name, run.held_out, channel))
+            })
             .collect(),
         risk: found.risk.as_ref().map(|(before, after)| (risk(study, before), risk(study, after))),
         next: found.next.as_ref().map(next),

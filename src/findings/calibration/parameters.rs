@@ -105,9 +105,7 @@ pub(super) fn parameters(
 /// Torque per reel speed and thickening of the fluid, relative to the nominal design: what viscosity, shear factor and all
 /// gaps act through.
 fn strength(study: &Study, found: &Calibration<'_>) -> ParameterFinding {
-    let of = |design: &crate::physics::Design| {
-        Coefficients::new(design).fluid.torque_per_speed_nms
-    };
+    let of = |design: &crate::physics::Design| Coefficients::new(design).fluid.torque_per_speed_nms;
     let nominal = of(&study.design);
     let values = |inputs: &Columns| -> Vec<f64> {
         (0..inputs.rows())

@@ -16,6 +16,7 @@
 //! and every browser, forge and office program reads SVG.
 
 mod axis;
+mod calibration;
 mod chart;
 mod convergence;
 mod distribution;
@@ -29,6 +30,7 @@ mod trade;
 
 use crate::findings::Findings;
 
+pub use calibration::calibration_figures;
 pub use paper::paper_figures;
 
 /// One figure.
