@@ -56,7 +56,7 @@ pub enum Suspicion {
 /// An interval this many times the usual one is a gap.
 const GAP: f64 = 3.5;
 /// Robust standard deviations beyond which a reading is an outlier.
-const OUTLYING: f64 = 8.0;
+const OUTLYING: f64 = 12.0;
 /// Equal readings in a row that make a sensor suspect.
 const STUCK: usize = 8;
 /// Standard deviations of the prior prediction beyond which readings are not explained.

@@ -262,13 +262,25 @@ fn source(finding: &CalibrationFinding) -> String {
     )
 }
 
+/// What makes a card a calibrated one: `run` then tells what it changed.
+fn parents(finding: &CalibrationFinding) -> String {
+    let runs: Vec<String> = finding
+        .runs
+        .iter()
+        .filter(|run| !run.held_out)
+        .map(|run| format!("{} (SHA-256 {})", short(&run.name), run.sha256))
+        .collect();
+    format!("calibrated_from = {}\n", quoted(&runs.join(", ")))
+}
+
 /// The card that draws from the joint sample `file`, whose SHA-256 is given.
 pub fn calibrated_card(finding: &CalibrationFinding, file: &str, sha256: &str) -> String {
     let mut text =
         head(finding, "The posterior of a calibration, drawn together from its joint sample.");
     text += &format!(
-        "\ntitle = {}\n\n[[joint]]\nfile = {}\nsha256 = \"{sha256}\"\nknown = \"never\"\ngroup = \"calibrated brake\"\nsource = {}\n",
+        "\ntitle = {}\n{}\n[[joint]]\nfile = {}\nsha256 = \"{sha256}\"\nknown = \"never\"\nnature = \"unknown\"\ngroup = \"calibrated brake\"\nsource = {}\n",
         quoted(&format!("{}, calibrated", finding.title)),
+        parents(finding),
         quoted(file),
         quoted(&source(finding))
     );
@@ -281,7 +293,8 @@ pub fn calibrated_laws(finding: &CalibrationFinding) -> String {
         finding,
         "The posterior of a calibration as laws and rank correlations: an approximation of its joint sample.",
     );
-    text += &format!("\ntitle = {}\n", quoted(&format!("{}, calibrated (laws)", finding.title)));
+    let title = quoted(&format!("{}, calibrated (laws)", finding.title));
+    text += &format!("\ntitle = {title}\n{}", parents(finding));
     for law in &finding.laws {
         text += &law_text(law, &source(finding));
     }
@@ -316,7 +329,11 @@ fn law_text(law: &LawFinding, source: &str) -> String {
     if law.each_surface {
         text += "each_surface = true\n";
     }
-    text + &format!("known = \"{}\"\nsource = {}\n", law.known, quoted(source))
+    text + &format!(
+        "known = \"{}\"\nnature = \"unknown\"\nsource = {}\n",
+        law.known,
+        quoted(source)
+    )
 }
 
 /// A TOML string.

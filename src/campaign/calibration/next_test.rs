@@ -9,7 +9,7 @@ use super::channel::Channel;
 use super::likelihood::RigLikelihood;
 use super::plan::is_hardware;
 use crate::calibration::narrowing::Dependence;
-use crate::calibration::noise::{Reading, Series, whiten};
+use crate::calibration::noise::{Noise, Reading, Series, whiten};
 use crate::descent::driven::{Drive, Record};
 use crate::error::Result;
 use crate::numerics::columns::Columns;
@@ -57,6 +57,8 @@ const VISCOMETER: f64 = 0.02;
 /// Length of a heating before a soak, and of the soak, s.
 const HEATING_S: f64 = 120.0;
 const SOAK_S: f64 = 1200.0;
+/// About how long a flight takes, s.
+const FLIGHT_S: f64 = 200.0;
 /// Standard normal quantile of 95 %.
 const NINETY_FIVE: f64 = 1.644_853_626_951_472_2;
 
@@ -119,7 +121,7 @@ impl Planner<'_> {
         let force_n = design.get(Parameter::PayloadWeight)
             - 0.5 * design.get(Parameter::PayloadExtractedWeight);
         let length_m = design.get(Parameter::ReelLineLength);
-        let speed_m_per_s = length_m / 200.0;
+        let speed_m_per_s = length_m / FLIGHT_S;
         let channels = self.channels();
         let temperatures: Vec<Channel> =
             channels.iter().copied().filter(|channel| channel.is_temperature()).collect();
@@ -131,9 +133,12 @@ impl Planner<'_> {
         ];
         for (name, drive, level) in runs {
             let record = Record::held(drive, level, 0.9 * length_m / speed_m_per_s, EVERY_S)?;
-            let predicted: Vec<Channel> = channels
-                .iter()
-                .copied()
+            let mut instruments = channels.clone();
+            if !instruments.contains(&Channel::Force) {
+                instruments.insert(0, Channel::Force);
+            }
+            let predicted: Vec<Channel> = instruments
+                .into_iter()
                 .filter(|&channel| match drive {
                     // With the power held, force and speed tell the same.
                     Drive::Force | Drive::Power => channel != Channel::Force,
@@ -207,7 +212,7 @@ impl Planner<'_> {
             let series = Series { readings, degrees_of_freedom: None };
             let mut columns: Vec<Vec<f64>> = vec![vec![0.0; count]];
             columns.extend(slopes.derivatives[c].iter().cloned());
-            whiten(&series, &self.likelihood.noise_at(*channel, &self.mean), &mut columns);
+            whiten(&series, &self.noise_of(*channel), &mut columns);
             for k in 0..count {
                 let row: Vec<f64> = self
                     .columns
@@ -227,6 +232,25 @@ impl Planner<'_> {
         let with = matrix.view((0, m), (m, 1)).into_owned();
         let information = matrix.view((0, 0), (m, m)) - &with * with.transpose() / own;
         information.iter().all(|value| value.is_finite()).then_some(information)
+    }
+
+    /// The noise of a channel as the runs found it. A force that always drove has the share of the payload's pull that
+    /// the speed's noise has of the flight's speed: at a given fluid the two go in proportion.
+    fn noise_of(&self, channel: Channel) -> Noise {
+        let known = self.channels().contains(&channel);
+        if known || channel != Channel::Force {
+            return self.likelihood.noise_at(channel, &self.mean);
+        }
+        let noise = self.likelihood.noise_at(Channel::Speed, &self.mean);
+        let design = &self.study.design;
+        let force_n = design.get(Parameter::PayloadWeight)
+            - 0.5 * design.get(Parameter::PayloadExtractedWeight);
+        let scale = force_n / (design.get(Parameter::ReelLineLength) / FLIGHT_S);
+        Noise {
+            sensor_sd: scale * noise.sensor_sd,
+            discrepancy_sd: scale * noise.discrepancy_sd,
+            correlation_time_s: noise.correlation_time_s,
+        }
     }
 
     /// Information of a direct measurement of some inputs, each with its standard deviation; nothing where no such input

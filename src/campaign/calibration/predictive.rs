@@ -95,23 +95,22 @@ fn check_run(
         .map(|z| match start {
             Start::Calibrated(k) => likelihood.initial_k(*k, z),
             Start::Read => {
-                // The first readings' mean, as uncertain as they are.
-                let thermometers: Vec<f64> = run
-                    .channels
-                    .iter()
-                    .filter(|(channel, _)| channel.is_temperature())
-                    .map(|(channel, _)| {
-                        let noise = likelihood.noise_at(*channel, z);
-                        noise.sensor_sd * noise.sensor_sd
-                            + noise.discrepancy_sd * noise.discrepancy_sd
-                    })
-                    .collect();
-                let count = thermometers.len() as f64;
-                let sd = match thermometers.is_empty() {
-                    true => run.initial.sd_k,
-                    false => thermometers.iter().sum::<f64>().sqrt() / count,
-                };
-                run.initial.mean_k + sd * standard_normal(&mut stream)
+                // The first readings, each as uncertain as it is.
+                let (mut weight, mut sum) = (0.0, 0.0);
+                for (channel, series) in &run.channels {
+                    let first = series.readings.first().filter(|_| channel.is_temperature());
+                    let Some(first) = first else { continue };
+                    let noise = likelihood.noise_at(*channel, z);
+                    let variance = noise.sensor_sd * noise.sensor_sd
+                        + noise.discrepancy_sd * noise.discrepancy_sd;
+                    weight += 1.0 / variance;
+                    sum += first.value / variance;
+                }
+                let draw = standard_normal(&mut stream);
+                match weight > 0.0 {
+                    true => sum / weight + draw / weight.sqrt(),
+                    false => run.initial.mean_k + run.initial.sd_k * draw,
+                }
             }
         })
         .collect();
@@ -135,6 +134,8 @@ fn check_run(
                 scores: vec![0.0; series.readings.len()],
             };
             let mut inside = 0;
+            // One error a draw, the same at every moment: the band does not shiver.
+            let errors: Vec<f64> = draws.iter().map(|_| standard_normal(&mut stream)).collect();
             for reading in &series.readings {
                 let mut model: Vec<f64> = predictions
                     .iter()
@@ -142,12 +143,12 @@ fn check_run(
                     .collect();
                 let mut read: Vec<f64> = model
                     .iter()
-                    .zip(&noises)
-                    .map(|(model, noise)| {
+                    .zip(noises.iter().zip(&errors))
+                    .map(|(model, (noise, error))| {
                         let variance = noise.sensor_sd * noise.sensor_sd
                             + noise.discrepancy_sd * noise.discrepancy_sd
                             + reading.variance;
-                        model + variance.sqrt() * standard_normal(&mut stream)
+                        model + variance.sqrt() * error
                     })
                     .collect();
                 model.sort_by(f64::total_cmp);
