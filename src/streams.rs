@@ -49,6 +49,8 @@ pub enum Purpose {
     Calibration,
     /// Data made up from a known truth.
     Synthetic,
+    /// Brakes and states of knowledge behind a plan of tests.
+    Planning,
     /// Tests and benchmarks.
     Test,
 }
@@ -74,6 +76,7 @@ impl Purpose {
             Purpose::Screening => b"screenng",
             Purpose::Calibration => b"calibrat",
             Purpose::Synthetic => b"syntheti",
+            Purpose::Planning => b"planning",
             Purpose::Test => b"test    ",
         }
     }

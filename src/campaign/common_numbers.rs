@@ -4,13 +4,12 @@
 //! change matters and nowhere else, and the difference of their breach probabilities has a far smaller
 //! error than either.
 
+pub use super::breaches::{Breaches, Event};
 use super::{Ensemble, Progress, in_parallel, sampler};
 use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
 use crate::outcomes::OutcomeTable;
 use crate::physics::Target;
-use crate::reliability::paired::PairedCounts;
-use crate::reliability::probability::Proportion;
 use crate::sampling::{Design, Sampler};
 use crate::sensitivity::conditional_normal::Conditioning;
 use crate::streams::Purpose;
@@ -75,103 +74,6 @@ impl Change {
     }
 }
 
-/// The event whose probability is asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Event {
-    /// Any limit is breached.
-    Any,
-    /// This limit is.
-    Limit(usize),
-}
-
-/// Which limits each row breaches.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Breaches {
-    breached: Vec<u32>,
-    unknown: Vec<u32>,
-}
-
-impl Breaches {
-    /// The breaches of a table's rows.
-    pub fn of(study: &Study, table: &OutcomeTable) -> Self {
-        let margin = |i: usize, k: usize| {
-            let limit = &study.limits[i];
-            limit.margin_of(table.outcomes.get(k, limit.outcome as usize))
-        };
-        Self::from_margins(study.limits.len(), table.rows(), margin)
-    }
-
-    /// The breaches of rows by the margin of limit `i` in row `k`; NaN where it is not known.
-    pub fn from_margins(limits: usize, rows: usize, margin: impl Fn(usize, usize) -> f64) -> Self {
-        let bits = |holds: &dyn Fn(f64) -> bool| {
-            let row = |k| (0..limits).fold(0, |bits, i| bits | u32::from(holds(margin(i, k))) << i);
-            (0..rows).map(row).collect()
-        };
-        Breaches { breached: bits(&|m| m < 0.0), unknown: bits(&f64::is_nan) }
-    }
-
-    /// Number of rows.
-    pub fn rows(&self) -> usize {
-        self.breached.len()
-    }
-
-    /// Whether the event happened in row `k`; `None` where that is not known.
-    pub fn happened(&self, event: Event, k: usize) -> Option<bool> {
-        let mask = match event {
-            Event::Any => u32::MAX,
-            Event::Limit(i) => 1 << i,
-        };
-        match (self.breached[k] & mask != 0, self.unknown[k] & mask != 0) {
-            (true, _) => Some(true),
-            (false, true) => None,
-            (false, false) => Some(false),
-        }
-    }
-
-    /// The event in each row as a number: 1, 0, or NaN where it is not known.
-    pub fn indicator(&self, event: Event) -> Vec<f64> {
-        let number = |k| self.happened(event, k).map_or(f64::NAN, |yes| f64::from(u8::from(yes)));
-        (0..self.rows()).map(number).collect()
-    }
-
-    /// The event counted over some rows.
-    pub fn counts(&self, event: Event, rows: impl Iterator<Item = usize>) -> Proportion {
-        let mut counts = Proportion { breaches: 0, faults: 0, samples: 0 };
-        for k in rows {
-            let happened = self.happened(event, k);
-            counts.samples += 1;
-            counts.breaches += u64::from(happened == Some(true));
-            counts.faults += u64::from(happened.is_none());
-        }
-        counts
-    }
-
-    /// The event counted over all rows.
-    pub fn count(&self, event: Event) -> Proportion {
-        self.counts(event, 0..self.rows())
-    }
-
-    /// Share of rows with a breach, a row that is not known taken as one: what a search goes by.
-    pub fn worst_share(&self) -> f64 {
-        let counts = self.count(Event::Any);
-        (counts.most_breaches()) as f64 / counts.samples.max(1) as f64
-    }
-
-    /// How this variant differs from `base`, row by row.
-    pub fn against(
-        &self,
-        base: &Breaches,
-        event: Event,
-        rows: impl Iterator<Item = usize>,
-    ) -> PairedCounts {
-        let mut counts = PairedCounts::default();
-        for k in rows {
-            counts.push(base.happened(event, k), self.happened(event, k));
-        }
-        counts
-    }
-}
-
 /// A sample of points of a study, kept to be looked at again.
 #[derive(Debug)]
 pub struct CommonSample<'a> {
@@ -195,6 +97,27 @@ impl<'a> CommonSample<'a> {
         Self::drawn(study, &sampler, 0..rows)
     }
 
+    /// The study's own points of these indices, ascending.
+    ///
+    /// # Errors
+    /// What [`sampler`] refuses, and an index beyond the design.
+    pub fn of_rows(study: &'a Study, rows: &[usize]) -> Result<Self> {
+        let sampler = sampler(study)?;
+        let mut uniforms = Columns::new(rows.len(), study.joint.dimension());
+        let mut start = 0;
+        while start < rows.len() {
+            let next = rows[start..].windows(2).take_while(|pair| pair[1] == pair[0] + 1);
+            let run = next.count() + 1;
+            let mut block = Columns::new(run, uniforms.columns());
+            sampler.fill(rows[start] as u64, &mut block)?;
+            for j in 0..uniforms.columns() {
+                uniforms.column_mut(j)[start..start + run].copy_from_slice(block.column(j));
+            }
+            start += run;
+        }
+        Ok(Self::at(study, sampler.replicates() as usize, uniforms))
+    }
+
     /// Independent points of a purpose's stream, by their indices.
     ///
     /// # Errors
@@ -210,6 +133,11 @@ impl<'a> CommonSample<'a> {
         let count = rows.end.saturating_sub(rows.start) as usize;
         let mut uniforms = Columns::new(count, study.joint.dimension());
         sampler.fill(rows.start, &mut uniforms)?;
+        Ok(Self::at(study, sampler.replicates() as usize, uniforms))
+    }
+
+    /// The draws at points of the unit cube.
+    fn at(study: &'a Study, replicates: usize, uniforms: Columns) -> Self {
         let points = match study.joint.copula() {
             None => uniforms,
             Some(copula) => {
@@ -223,7 +151,6 @@ impl<'a> CommonSample<'a> {
                 correlated
             }
         };
-        let replicates = sampler.replicates() as usize;
         let inputs = Columns::new(points.rows(), points.columns());
         let mut sample = CommonSample { study, replicates, points, inputs };
         let columns: Vec<usize> = (0..study.inputs.len()).filter(|&j| sample.is_alone(j)).collect();
@@ -232,7 +159,7 @@ impl<'a> CommonSample<'a> {
             sample.inputs.column_mut(j).copy_from_slice(column);
         }
         sample.fill_drawn_together();
-        Ok(sample)
+        sample
     }
 
     /// Writes the inputs that are drawn together with others.
@@ -263,6 +190,41 @@ impl<'a> CommonSample<'a> {
     /// The unchanged inputs, SI.
     pub fn inputs(&self) -> &Columns {
         &self.inputs
+    }
+
+    /// Some of the points, as a sample of their own.
+    pub fn rows_of(&self, rows: &[u32]) -> CommonSample<'a> {
+        let gather = |from: &Columns| {
+            let mut columns = Columns::new(rows.len(), from.columns());
+            for j in 0..from.columns() {
+                let own = from.column(j);
+                let into = columns.column_mut(j).iter_mut();
+                into.zip(rows).for_each(|(value, &row)| *value = own[row as usize]);
+            }
+            columns
+        };
+        CommonSample {
+            study: self.study,
+            replicates: self.replicates,
+            points: gather(&self.points),
+            inputs: gather(&self.inputs),
+        }
+    }
+
+    /// The normal scores Φ⁻¹(F(x)) of an input.
+    pub fn normal_scores(&self, j: usize) -> Vec<f64> {
+        if !self.is_alone(j) {
+            // A value drawn from a table: the middle of its step, which is never 0 nor 1.
+            let law = &self.study.inputs[j].marginal;
+            let middle = |&x: &f64| 0.5 * (law.cdf(x.next_down()) + law.cdf(x));
+            let scores = self.inputs.column(j).iter().map(middle);
+            return scores.map(crate::numerics::special::normal::quantile).collect();
+        }
+        let mut scores = self.points.column(j).to_vec();
+        if self.study.joint.copula().is_none() {
+            crate::numerics::special::normal::quantile_column(self.points.column(j), &mut scores);
+        }
+        scores
     }
 
     /// Input `j` under the law `marginal`. One that is drawn together with others keeps the rank that its row
@@ -300,16 +262,26 @@ impl<'a> CommonSample<'a> {
     /// # Errors
     /// If a design value does not fit an input's law.
     pub fn changed(&self, change: &Change, progress: &Progress) -> Result<Breaches> {
+        Ok(Breaches::of(self.study, &self.table(change, progress)?))
+    }
+
+    /// What becomes of a variant of the study at these points.
+    ///
+    /// # Errors
+    /// As [`Self::changed`].
+    pub fn table(&self, change: &Change, progress: &Progress) -> Result<OutcomeTable> {
         let mut study = self.study.clone();
         let mut inputs = self.inputs.clone();
         let mut marginals = change.marginals.clone();
         for &(target, value) in &change.design {
             study.design.set(target, value);
             for (j, input) in self.study.inputs.iter().enumerate() {
-                if input.target == target {
+                // A whole gap is the mean of every surface's.
+                let whole = target.surface.is_none() && input.target.parameter == target.parameter;
+                if whole || input.target == target {
                     let changed = marginals.iter().position(|(k, _)| *k == j);
                     let law = changed.map_or(&input.marginal, |at| &marginals[at].1);
-                    let moved = law.with_shifted_mean(value - law.law().mean())?;
+                    let moved = law.with_shifted_mean(value - law.law().anchor())?;
                     marginals.retain(|(k, _)| *k != j);
                     marginals.push((j, moved));
                 }
@@ -321,8 +293,7 @@ impl<'a> CommonSample<'a> {
         if !change.known.is_empty() {
             self.condition(&change.known, &marginals, &mut inputs)?;
         }
-        let table = Ensemble::new(&study).at_inputs(&inputs, progress);
-        Ok(Breaches::of(&study, &table))
+        Ok(Ensemble::new(&study).at_inputs(&inputs, progress))
     }
 
     /// Gives every row the known values, and the inputs that depend on them their laws given those.
@@ -410,7 +381,7 @@ impl<'a> CommonSample<'a> {
     }
 
     /// The breaches at draws of the study.
-    pub fn at(&self, inputs: &Columns, progress: &Progress) -> Breaches {
+    pub fn breaches_at(&self, inputs: &Columns, progress: &Progress) -> Breaches {
         Breaches::of(self.study, &Ensemble::new(self.study).at_inputs(inputs, progress))
     }
 }

@@ -10,10 +10,11 @@ use crate::sampling::Sampler;
 use crate::study::Study;
 use crate::uncertainty::Joint;
 use rayon::prelude::*;
+use std::convert::Infallible;
 use std::ops::Range;
 
 /// Samples that one thread draws and integrates at a time.
-const BATCH: u64 = 1024;
+const BATCH: usize = 1024;
 
 /// The nominal descent of a study, by the plain integrator.
 ///
@@ -32,6 +33,8 @@ pub struct Ensemble<'a> {
     targets: Vec<Target>,
     model: Model,
     tolerance: f64,
+    /// Whether a draw of a possible design is possible when each of its values is.
+    checks_are_separate: bool,
 }
 
 impl<'a> Ensemble<'a> {
@@ -43,6 +46,8 @@ impl<'a> Ensemble<'a> {
             targets: study.inputs.iter().map(|input| input.target).collect(),
             model: study.model,
             tolerance: study.numerics.tolerance,
+            checks_are_separate: study.design.is_possible()
+                && study.inputs.iter().all(|input| input.target.is_checked_alone()),
         }
     }
 
@@ -77,71 +82,106 @@ impl<'a> Ensemble<'a> {
         range: Range<u64>,
         progress: &Progress,
     ) -> Result<OutcomeTable> {
-        let starts: Vec<u64> = range.clone().step_by(BATCH as usize).collect();
+        let rows = (range.end - range.start) as usize;
+        let work = Work { first: range.start, rows, keep_inputs: true, may_stop: true };
+        self.batches(&work, progress, |start, inputs| {
+            let mut uniforms = Columns::new(inputs.rows(), self.dimension());
+            sampler.fill(range.start + start as u64, &mut uniforms)?;
+            self.joint.from_uniform(&uniforms, inputs);
+            Ok(())
+        })
+    }
+
+    /// Outcomes at standard-normal points (rows), on every core; the table holds no inputs.
+    pub fn at_standard_normal(&self, points: &Columns, progress: &Progress) -> OutcomeTable {
+        self.certain(&Work::outcomes(points.rows()), progress, |start, inputs| {
+            self.joint.from_standard_normal(&points.rows_from(start, inputs.rows()), inputs);
+        })
+    }
+
+    /// Draws and outcomes at points of the unit cube (rows), on every core.
+    pub fn at_uniform(&self, points: &Columns, progress: &Progress) -> OutcomeTable {
+        let work = Work { keep_inputs: true, ..Work::outcomes(points.rows()) };
+        self.certain(&work, progress, |start, inputs| {
+            self.joint.from_uniform(&points.rows_from(start, inputs.rows()), inputs);
+        })
+    }
+
+    /// Outcomes of draws (rows, SI), on every core; the table holds no inputs.
+    pub fn at_inputs(&self, draws: &Columns, progress: &Progress) -> OutcomeTable {
+        self.certain(&Work::outcomes(draws.rows()), progress, |start, inputs| {
+            *inputs = draws.rows_from(start, inputs.rows());
+        })
+    }
+
+    /// [`Self::batches`] of draws that cannot fail.
+    fn certain(
+        &self,
+        work: &Work,
+        progress: &Progress,
+        fill: impl Fn(usize, &mut Columns) + Sync,
+    ) -> OutcomeTable {
+        let filled =
+            self.batches(work, progress, |start, inputs| -> std::result::Result<(), Infallible> {
+                fill(start, inputs);
+                Ok(())
+            });
+        match filled {
+            Ok(table) => table,
+            Err(never) => match never {},
+        }
+    }
+
+    /// Computes rows in batches, whose draws `fill` writes for the rows from its first argument on.
+    fn batches<E: Send>(
+        &self,
+        work: &Work,
+        progress: &Progress,
+        fill: impl Fn(usize, &mut Columns) -> std::result::Result<(), E> + Sync,
+    ) -> std::result::Result<OutcomeTable, E> {
+        let starts: Vec<usize> = (0..work.rows).step_by(BATCH).collect();
         let batches: Vec<Option<OutcomeTable>> = starts
             .par_iter()
             .map(|&start| {
-                if progress.stopping() {
+                if work.may_stop && progress.stopping() {
                     return Ok(None);
                 }
-                let rows = (range.end - start).min(BATCH) as usize;
-                let mut uniforms = Columns::new(rows, self.dimension());
-                sampler.fill(start, &mut uniforms)?;
-                let mut table = OutcomeTable::new(start, rows, self.dimension());
-                self.joint.from_uniform(&uniforms, &mut table.inputs);
+                let rows = (work.rows - start).min(BATCH);
+                let mut table =
+                    OutcomeTable::new(work.first + start as u64, rows, self.dimension());
+                fill(start, &mut table.inputs)?;
                 self.integrate(&mut table);
                 progress.advance(rows);
+                if !work.keep_inputs {
+                    table.inputs = Columns::new(rows, 0);
+                }
                 Ok(Some(table))
             })
-            .collect::<Result<_>>()?;
+            .collect::<std::result::Result<_, E>>()?;
         let complete: Vec<OutcomeTable> = batches.into_iter().map_while(|batch| batch).collect();
-        Ok(OutcomeTable::joined(range.start, self.dimension(), &complete))
-    }
-
-    /// Outcomes at standard-normal points (rows), on every core.
-    pub fn at_standard_normal(&self, points: &Columns, progress: &Progress) -> OutcomeTable {
-        let mut inputs = Columns::new(points.rows(), self.dimension());
-        self.joint.from_standard_normal(points, &mut inputs);
-        self.at_inputs(&inputs, progress)
-    }
-
-    /// Outcomes at points of the unit cube (rows), on every core.
-    pub fn at_uniform(&self, points: &Columns, progress: &Progress) -> OutcomeTable {
-        let mut inputs = Columns::new(points.rows(), self.dimension());
-        self.joint.from_uniform(points, &mut inputs);
-        self.at_inputs(&inputs, progress)
-    }
-
-    /// Outcomes of draws (rows, SI), on every core.
-    pub fn at_inputs(&self, inputs: &Columns, progress: &Progress) -> OutcomeTable {
-        let starts: Vec<usize> = (0..inputs.rows()).step_by(BATCH as usize).collect();
-        let batches: Vec<OutcomeTable> = starts
-            .par_iter()
-            .map(|&start| {
-                let rows = (inputs.rows() - start).min(BATCH as usize);
-                let mut table = OutcomeTable::new(start as u64, rows, self.dimension());
-                for j in 0..self.dimension() {
-                    let column = &inputs.column(j)[start..start + rows];
-                    table.inputs.column_mut(j).copy_from_slice(column);
-                }
-                self.integrate(&mut table);
-                progress.advance(rows);
-                table
-            })
-            .collect();
-        OutcomeTable::joined(0, self.dimension(), &batches)
+        let inputs = if work.keep_inputs { self.dimension() } else { 0 };
+        Ok(OutcomeTable::joined(work.first, inputs, &complete))
     }
 
     /// Integrates the rows of a table from its inputs. An impossible draw is a fault of its row.
     fn integrate(&self, table: &mut OutcomeTable) {
         let mut design = self.design.clone();
+        let mut possible = vec![true; table.rows()];
+        if self.checks_are_separate {
+            for (j, target) in self.targets.iter().enumerate() {
+                let info = target.parameter.info();
+                for (possible, &value) in possible.iter_mut().zip(table.inputs.column(j)) {
+                    *possible &= info.admits(value);
+                }
+            }
+        }
         let mut coefficients = Vec::with_capacity(table.rows());
         let mut rows = Vec::with_capacity(table.rows());
-        for k in 0..table.rows() {
+        for (k, &possible) in possible.iter().enumerate() {
             for (j, &target) in self.targets.iter().enumerate() {
                 design.set(target, table.inputs.get(k, j));
             }
-            if design.is_possible() {
+            if possible && (self.checks_are_separate || design.is_possible()) {
                 coefficients.push(Coefficients::new(&design));
                 rows.push(k);
             } else {
@@ -153,5 +193,24 @@ impl<'a> Ensemble<'a> {
         for (k, result) in rows.into_iter().zip(results) {
             table.record(k, result);
         }
+    }
+}
+
+/// Rows to compute.
+struct Work {
+    /// Index of the first.
+    first: u64,
+    /// How many.
+    rows: usize,
+    /// Whether the table is to hold the draws.
+    keep_inputs: bool,
+    /// Whether to end early when asked to.
+    may_stop: bool,
+}
+
+impl Work {
+    /// All of `rows`, for their outcomes.
+    fn outcomes(rows: usize) -> Self {
+        Work { first: 0, rows, keep_inputs: false, may_stop: false }
     }
 }

@@ -5,6 +5,7 @@ use super::Progress;
 use super::common_numbers::{Breaches, Change, CommonSample, Event};
 use crate::error::Result;
 use crate::numerics::columns::Columns;
+use crate::physics::{Parameter, Target};
 use crate::streams::Purpose;
 use crate::study::{Known, Study};
 use crate::uncertainty::Law;
@@ -36,15 +37,28 @@ pub struct Chart {
     pub settings: Vec<(f64, Breaches)>,
 }
 
+/// The second of two measured values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Second {
+    /// An input that is measured on the day.
+    Input(usize),
+    /// A design value that is measured in the lot: the nominal viscosity of the fluid that is filled in.
+    Lot(Target),
+}
+
 /// P(breach) against two measured values, everything else uncertain.
 #[derive(Debug, Clone)]
 pub struct Map {
-    /// The inputs.
-    pub inputs: (usize, usize),
+    /// The input measured first.
+    pub input: usize,
+    /// What is measured besides.
+    pub beside: Second,
     /// Values of the first, SI, ascending.
     pub first: Vec<f64>,
     /// Values of the second, SI, ascending.
     pub second: Vec<f64>,
+    /// Samples behind each cell.
+    pub samples: u64,
     /// Breaches given both, row by row of the first.
     pub breaches: Vec<Breaches>,
 }
@@ -56,7 +70,7 @@ pub struct KnownOutcomes {
     pub stages: Vec<Stage>,
     /// One chart for every input that is measured on the day.
     pub charts: Vec<Chart>,
-    /// The first two inputs that are measured on the day, together.
+    /// The first input that is measured on the day with the second, or with the viscosity of the lot.
     pub map: Option<Map>,
     /// Samples behind each setting of a chart.
     pub samples: u64,
@@ -66,8 +80,13 @@ pub struct KnownOutcomes {
 pub fn known_descents(study: &Study) -> u64 {
     let rows = study.trade.samples.min(study.sampling.samples);
     let days = measured(study).len() as u64;
-    let maps = if days > 1 { 121 } else { 0 };
-    2 * outer(rows) * INNER as u64 + (days * SETTINGS as u64 + maps) * rows
+    let columns = match (days, lot(study)) {
+        (0, _) | (1, None) => 0,
+        (1, Some(_)) => SETTINGS,
+        _ => COARSE,
+    };
+    let maps = (COARSE * columns) as u64 * map_rows(rows);
+    2 * outer(rows) * INNER as u64 + days * SETTINGS as u64 * rows + maps
 }
 
 fn outer(rows: u64) -> u64 {
@@ -81,17 +100,13 @@ fn measured(study: &Study) -> Vec<usize> {
     (0..study.inputs.len()).filter(on_the_day).collect()
 }
 
-/// Computes what is known when, with no more effort than the `available` samples of the run deserve. `None` if the study asks for no trade, has no limit, or `progress` asks
-/// for a stop.
+/// Computes what is known when, on no more samples than the study has at most, wherever it stopped. `None` if
+/// the study asks for no trade, has no limit, or `progress` asks for a stop.
 ///
 /// # Errors
 /// If the inputs' dependence cannot be conditioned.
-pub fn run_known(
-    study: &Study,
-    available: u64,
-    progress: &Progress,
-) -> Result<Option<KnownOutcomes>> {
-    let rows = study.trade.samples.min(available);
+pub fn run_known(study: &Study, progress: &Progress) -> Result<Option<KnownOutcomes>> {
+    let rows = study.trade.samples.min(study.sampling.samples);
     if rows == 0 || study.limits.is_empty() {
         return Ok(None);
     }
@@ -120,10 +135,13 @@ pub fn run_known(
             return Ok(None);
         }
     }
-    let map = match measured(study)[..] {
-        [first, second, ..] => Some(map(study, first, second, &sample, progress)?),
+    let map = match (&measured(study)[..], lot(study)) {
+        ([first, second, ..], _) => Some((*first, Second::Input(*second))),
+        ([first], Some(lot)) => Some((*first, Second::Lot(lot))),
         _ => None,
     };
+    let map =
+        map.map(|(first, beside)| map_of(study, first, beside, rows, progress)).transpose()?;
     Ok(Some(KnownOutcomes { stages, charts, map, samples: rows }))
 }
 
@@ -143,25 +161,58 @@ fn values(study: &Study, input: usize) -> Vec<f64> {
     (0..SETTINGS).map(|k| at(k).clamp(from + inside, to - inside)).collect()
 }
 
-fn map(
+/// The viscosity of the lot, if it is a design value: then a lot has one that can be measured.
+fn lot(study: &Study) -> Option<Target> {
+    let target = Target::whole(Parameter::FluidNominalViscosity);
+    let uncertain = study.inputs.iter().any(|input| input.target == target);
+    (!uncertain).then_some(target)
+}
+
+/// Values of a lot: the range over which the design value may move.
+fn lot_values(study: &Study, target: Target) -> Vec<f64> {
+    let stated = study.tighten.design.iter().find(|range| range.target == target);
+    let nominal = study.design.at(target);
+    let (from, to) = stated.map_or((0.6 * nominal, 1.4 * nominal), |r| (r.lower, r.upper));
+    let last = (SETTINGS - 1) as f64;
+    (0..SETTINGS).map(|k| from + (to - from) * (k as f64 / last)).collect()
+}
+
+/// Values of a measured input in a map: every other setting of its chart.
+const COARSE: usize = SETTINGS / 2 + 1;
+
+/// Samples of a cell: a map has many, and says of each only whether to go.
+fn map_rows(rows: u64) -> u64 {
+    (rows / 5).max(rows.min(1000))
+}
+
+fn map_of(
     study: &Study,
-    first: usize,
-    second: usize,
-    sample: &CommonSample<'_>,
+    input: usize,
+    beside: Second,
+    rows: u64,
     progress: &Progress,
 ) -> Result<Map> {
-    // Every other setting of the charts.
+    let samples = map_rows(rows);
+    // The first of the charts' points.
+    let sample = CommonSample::independent(study, 0..samples, Purpose::Known)?;
     let coarse = |input| values(study, input).into_iter().step_by(2).collect::<Vec<f64>>();
-    let (rows, columns) = (coarse(first), coarse(second));
-    let mut breaches = Vec::with_capacity(rows.len() * columns.len());
-    for &a in &rows {
-        for &b in &columns {
-            let known = vec![(first, a), (second, b)];
-            let change = Change { known, ..Change::default() };
+    let first = coarse(input);
+    let second = match beside {
+        Second::Input(other) => coarse(other),
+        Second::Lot(target) => lot_values(study, target),
+    };
+    let mut breaches = Vec::with_capacity(first.len() * second.len());
+    for &a in &first {
+        for &b in &second {
+            let mut change = Change { known: vec![(input, a)], ..Change::default() };
+            match beside {
+                Second::Input(other) => change.known.push((other, b)),
+                Second::Lot(target) => change.design.push((target, b)),
+            }
             breaches.push(sample.changed(&change, progress)?);
         }
     }
-    Ok(Map { inputs: (first, second), first: rows, second: columns, breaches })
+    Ok(Map { input, beside, first, second, samples, breaches })
 }
 
 fn stage(
@@ -176,7 +227,7 @@ fn stage(
     let rows = outer * INNER as u64;
     let continuations = CommonSample::independent(study, outer..outer + rows, Purpose::Known)?;
     let draws: Columns = sets.mixed(given, |k| k / INNER, &continuations)?;
-    let found = sets.at(&draws, progress);
+    let found = sets.breaches_at(&draws, progress);
     let breaches = (0..outer as usize)
         .map(|set| {
             let counts = found.counts(Event::Any, set * INNER..(set + 1) * INNER);

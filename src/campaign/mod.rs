@@ -4,17 +4,22 @@
 //! the work is cut into batches of fixed size at fixed places, and whatever is summed is summed in the
 //! order of the samples, so that nothing depends on the number of threads.
 
+mod breaches;
 pub mod calibration;
 pub mod common_numbers;
 mod evaluate;
+pub mod given_sample;
 pub mod known;
 mod limit_state;
 mod looks;
 mod pick_freeze;
 mod rare;
 mod record;
+mod refutation;
 pub mod scores;
+pub mod screening;
 pub mod shapley;
+pub mod sweep;
 pub mod tighten;
 pub mod trade;
 mod verification;

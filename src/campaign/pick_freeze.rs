@@ -74,6 +74,14 @@ pub fn run_pick_freeze(study: &Study, progress: &Progress) -> Result<Option<Pick
     }
     let inputs = study.inputs.len();
     let plan = Plan::new(rows as usize, inputs, factors(study))?;
+    let place = |name: &String| {
+        let is = |factor: &Factor| factor.name.trim_end_matches(" (all)") == *name;
+        plan.factors().iter().rposition(is)
+    };
+    let pairs = study.sensitivity.pairs.iter();
+    let pairs: Vec<(usize, usize)> =
+        pairs.filter_map(|(one, other)| Some((place(one)?, place(other)?))).collect();
+    let plan = plan.with_pairs(&pairs)?;
     let seed = study.sampling.seed;
     let columns = plan.base_columns();
     let sampler = Sampler::new(Design::MonteCarlo, columns, rows, 1, seed, Purpose::PickFreeze)?;

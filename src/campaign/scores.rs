@@ -3,7 +3,7 @@
 
 use super::common_numbers::{Breaches, Event};
 use super::trade::Parameter;
-use super::{Record, in_parallel, sampler};
+use super::{in_parallel, sampler};
 use crate::error::Result;
 use crate::numerics::columns::Columns;
 use crate::numerics::elementary::{exp, ln};
@@ -36,6 +36,10 @@ fn without_score(study: &Study, columns: &[usize]) -> Option<String> {
     if columns.iter().any(|&j| study.joint.sample_of(j).is_some()) {
         return Some("rows of a joint sample have no density".into());
     }
+    let predicted = |&j: &usize| matches!(study.inputs[j].marginal.law(), Law::Student { .. });
+    if columns.iter().any(predicted) {
+        return Some("the law is what readings predict, which has no parameter of its own".into());
+    }
     let ended = |&j: &usize| {
         let law = study.inputs[j].marginal.law();
         !matches!(law, Law::Normal { .. } | Law::Lognormal { .. } | Law::Gumbel { .. })
@@ -46,14 +50,15 @@ fn without_score(study: &Study, columns: &[usize]) -> Option<String> {
     })
 }
 
-/// The score sums of every factor over all samples of the run, whose draws are computed again.
+/// The score sums of every factor over the first `samples` samples of the design, whose draws are computed
+/// again and whose breaches `breaches` gives, from a sample on so many.
 pub(super) fn scores(
     study: &Study,
-    record: &Record,
+    samples: u64,
+    breaches: impl Fn(usize, usize) -> Breaches + Sync + Send,
     factors: &[Factor],
 ) -> Result<Vec<FactorScores>> {
     let sampler = sampler(study)?;
-    let samples = record.counts().samples();
     let events: Vec<Event> =
         (0..study.limits.len()).map(Event::Limit).chain([Event::Any]).collect();
     let parameters = [Parameter::Spread, Parameter::Mean];
@@ -66,9 +71,7 @@ pub(super) fn scores(
         sampler.fill(first, &mut uniforms)?;
         let mut inputs = Columns::default();
         study.joint.from_uniform(&uniforms, &mut inputs);
-        let breaches = Breaches::from_margins(study.limits.len(), rows, |i, k| {
-            record.margins(i)[first as usize + k]
-        });
+        let breaches = breaches(first as usize, rows);
         let mut sums = vec![ScoreSums::default(); factors.len() * 2 * events.len()];
         let mut places = sums.chunks_mut(events.len());
         for (factor, reason) in factors.iter().zip(&reasons) {

@@ -3,9 +3,13 @@
 
 use super::Progress;
 use super::common_numbers::{Breaches, Change, CommonSample, Event};
+use super::refutation::{MOST_DESCENTS, Refutation};
 use super::trade::trade_factors;
 use crate::error::{Error, Result};
-use crate::reliability::allocation::{Allocation, FreeValue, Problem, Purchase, Search, cheapest};
+use crate::reliability::allocation::{
+    Allocation, FreeValue, Problem, Purchase, Search, cheapest, trimmed,
+};
+use crate::reliability::cheaper_plans::{Proof, prove};
 use crate::reliability::demonstration::{Demonstration, Requirement, Verdict};
 use crate::sensitivity::pick_freeze::Factor;
 use crate::streams::Purpose;
@@ -59,6 +63,10 @@ pub struct Tightening {
     pub aim: f64,
     /// The last search.
     pub search: Search,
+    /// Whether a cheaper plan of the grid reaches the aim; `None` without a plan.
+    pub proof: Option<Proof>,
+    /// Settings of the design values at which cheaper plans were refuted.
+    pub settings: usize,
     /// Breaches of the study as it is, on the search's sample.
     pub base: Breaches,
     /// The last confirming run; of the plan, or without one of everything that can be bought.
@@ -172,10 +180,39 @@ pub fn tighten(
             let change = change(study, &factors, spreads, design)?;
             Ok(sample.changed(&change, progress)?.worst_share())
         };
-        let search = match cheapest(&problem, &mut evaluate) {
+        let mut search = match cheapest(&problem, &mut evaluate) {
             Err(_) if progress.stopping() => return Ok(None),
             found => found?,
         };
+        let mut settings = 0;
+        let proof = match &search.plan {
+            None => None,
+            Some(plan) => {
+                let in_hand = (&plan.spreads[..], &plan.design[..]);
+                let mut refutation = Refutation::new(&sample, &factors, in_hand, aim, progress)?;
+                settings = refutation.settings();
+                let begun = progress.done();
+                Some(prove(&problem.purchases, plan.cost, |spreads| {
+                    if progress.stopping() || progress.done() - begun > MOST_DESCENTS {
+                        return Ok(None);
+                    }
+                    Ok(Some(refutation.reached(spreads, progress)?))
+                })?)
+            }
+        };
+        if progress.stopping() {
+            return Ok(None);
+        }
+        if let Some(((spreads, _), design)) = proof.as_ref().and_then(|proof| proof.found.clone()) {
+            let mut evaluate = |spreads: &[f64], design: &[f64]| -> Result<f64> {
+                let change = change(study, &factors, spreads, design)?;
+                Ok(sample.changed(&change, progress)?.worst_share())
+            };
+            let (plan, evaluations) = trimmed(&problem, &mut evaluate, spreads, design)?;
+            search.evaluations += evaluations;
+            search.steps.push(plan.clone());
+            search.plan = Some(plan);
+        }
         let plan = search.plan.as_ref().unwrap_or(&search.everything).clone();
         let first = attempt * confirming;
         let again =
@@ -203,6 +240,8 @@ pub fn tighten(
             samples: rows,
             aim,
             search,
+            proof,
+            settings,
             base,
             confirmation: Confirmation { plan, breaches, demonstration },
             attempts: attempt,

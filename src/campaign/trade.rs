@@ -136,7 +136,9 @@ pub struct TradeOutcomes<'a> {
     pub replicates: usize,
     /// The best tightenings on it, the best first.
     pub halved: Vec<Halved>,
-    /// Score sums over all samples of the run.
+    /// Samples behind the score sums: all of the run, or the headlines' if the run ended by what it saw.
+    pub score_samples: u64,
+    /// Score sums over them.
     pub scores: Vec<FactorScores>,
     /// Derivatives by common random numbers on the larger sample, of the factors in `halved`.
     pub differences: Vec<CentralDifference>,
@@ -146,12 +148,19 @@ pub struct TradeOutcomes<'a> {
     pub at_best: Option<AtBest>,
 }
 
+/// Samples behind the curves, and behind the headlines: fixed before the run. What an adaptive run saw decides
+/// where it stops, so a trade whose size followed it would not have earned its intervals.
+fn sizes(study: &Study) -> (u64, u64) {
+    let most = study.sampling.samples;
+    let factor = if study.sampling.stopping.is_some() { 1 } else { HEADLINE };
+    (study.trade.samples.min(most), (factor * study.trade.samples).min(most))
+}
+
 /// Descents that the trade of a study takes, about.
 pub fn trade_descents(study: &Study) -> u64 {
     let factors = trade_factors(study).len() as u64;
-    let rows = study.trade.samples.min(study.sampling.samples);
+    let (rows, headline) = sizes(study);
     let curves = factors * (SPREADS.len() + SHIFTS.len()) as u64;
-    let headline = (HEADLINE * study.trade.samples).min(study.sampling.samples);
     let sweeps = study.tighten.design.len() as u64 * (2 * SWEEP as u64) + factors + 1;
     rows * (1 + curves + sweeps) + headline * 5 * HEADLINES as u64
 }
@@ -169,15 +178,19 @@ pub fn run_trade<'a>(
     if study.trade.samples == 0 || study.limits.is_empty() {
         return Ok(None);
     }
-    let available = record.counts().samples();
-    let sample = CommonSample::of_run(study, study.trade.samples.min(available))?;
+    let (rows, headline) = sizes(study);
+    let sample = CommonSample::of_run(study, rows)?;
     let factors = trade_factors(study);
-    let of_run = |rows: usize| {
-        Breaches::from_margins(study.limits.len(), rows, |i, k| {
-            record.margins(i).get(k).copied().unwrap_or(f64::NAN)
-        })
+    let of_run = |first: usize, rows: usize| {
+        Breaches::from_margins(study.limits.len(), rows, |i, k| record.margins(i)[first + k])
     };
-    let base = of_run(sample.rows());
+    let run = record.counts().samples();
+    let base_of = |sample: &CommonSample<'_>| match sample.rows() {
+        rows if rows as u64 <= run => Ok(of_run(0, rows)),
+        // Points beyond where an adaptive run stopped.
+        _ => sample.base(progress),
+    };
+    let base = base_of(&sample)?;
     let mut curves = Vec::new();
     for (f, factor) in factors.iter().enumerate() {
         for parameter in [Parameter::Spread, Parameter::Mean] {
@@ -187,8 +200,8 @@ pub fn run_trade<'a>(
             curves.push(curve(&sample, f, &factor.columns, parameter, progress)?);
         }
     }
-    let headline = CommonSample::of_run(study, (HEADLINE * study.trade.samples).min(available))?;
-    let headline_base = of_run(headline.rows());
+    let headline = CommonSample::of_run(study, headline)?;
+    let headline_base = base_of(&headline)?;
     let mut halved = Vec::new();
     let mut differences = Vec::new();
     for f in best_halvings(&curves, &base) {
@@ -212,8 +225,16 @@ pub fn run_trade<'a>(
         false => Some(at_best(&sample, &factors, &sweeps, progress)?),
     };
     let replicates = headline.replicates();
-    let scores = scores(study, record, &factors)?;
+    let (score_samples, scores) = match study.sampling.stopping {
+        None => (run, scores(study, run, of_run, &factors)?),
+        Some(_) => {
+            let rows = headline_base.rows() as u64;
+            let part = |first, rows| headline_base.part(first..first + rows);
+            (rows, scores(study, rows, part, &factors)?)
+        }
+    };
     Ok(Some(TradeOutcomes {
+        score_samples,
         sample,
         base,
         factors,
@@ -301,6 +322,10 @@ fn central_difference(
     }
     let law = study.inputs[first].marginal.law();
     let step = STEP * if parameter == Parameter::Mean { law.sd() } else { law.spread() };
+    // The law of a few readings may have no standard deviation to step by.
+    if !step.is_finite() {
+        return Ok(None);
+    }
     let side = |delta: f64| -> Result<Breaches> {
         let mut change = Change::default();
         for &j in columns {

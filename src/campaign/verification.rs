@@ -12,7 +12,7 @@ use crate::study::Study;
 /// A margin within this share of its limit is near it.
 pub const NEAR: f64 = 1e-4;
 /// Samples near one limit that are computed again, at most: the nearest.
-const MOST_NEAR: usize = 1000;
+const MOST_NEAR: usize = 200;
 /// Samples from the start of the run whose error is measured.
 const MEASURED: u64 = 256;
 

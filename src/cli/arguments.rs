@@ -1,5 +1,7 @@
 //! The command line.
 
+use super::calibrate_arguments::CalibrateArguments;
+use super::rig_arguments::RigArguments;
 use crate::error::Result;
 use crate::store::PARQUET;
 use crate::study::{Override, Study};
@@ -27,10 +29,18 @@ pub(super) enum Command {
     Run(RunArguments),
     /// Compute one nominal descent and show its outcomes
     Descend(DescendArguments),
+    /// Say what changed between two finished runs: inputs, probabilities, margins, drivers
+    Compare(CompareArguments),
+    /// Map the design space along one or two paths: outcomes, margins, probabilities, best values
+    Sweep(SweepArguments),
     /// Find the cheapest tightenings and design change that meet a target, and confirm them
     Tighten(TightenArguments),
     /// Learn the brake from measured rig runs: a posterior, its checks, and a calibrated card
-    Calibrate(CalibrateArguments),
+    Calibrate(Box<CalibrateArguments>),
+    /// The horizontal rig: one run, its modes compared as test options, or the best tests planned
+    Rig(Box<RigArguments>),
+    /// Draw the paper's figures again and hold them against what the paper says of them
+    Paper(PaperArguments),
     /// Compute one sample of a run again, and compare it bit for bit
     Replay(ReplayArguments),
     /// Validate a study and show every resolved input with its unit and source
@@ -116,12 +126,68 @@ pub(super) struct DescendArguments {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct CompareArguments {
+    /// Directory of the run before
+    #[arg(value_name = "RUN_A")]
+    pub before: PathBuf,
+    /// Directory of the run after
+    #[arg(value_name = "RUN_B")]
+    pub after: PathBuf,
+    /// Write the comparison as Markdown too
+    #[arg(long, value_name = "FILE")]
+    pub markdown: Option<PathBuf>,
+    /// Print the comparison as one JSON object in SI, and nothing else, on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SweepArguments {
+    #[command(flatten)]
+    pub study: StudyArguments,
+    /// A design path and its values, such as fluid.nominal_viscosity=80000cSt..160000cSt:33; once or twice
+    #[arg(long, value_name = "PATH=FROM..TO:N", required = true)]
+    pub over: Vec<String>,
+    /// Take the values of this swept path as exact, in place of the card's law for it [default for what
+    /// becomes known on the day]
+    #[arg(long, value_name = "PATH")]
+    pub hold: Vec<String>,
+    /// Move the card's law for this swept path to each value, with its spread [default for everything
+    /// else that is uncertain]
+    #[arg(long, value_name = "PATH")]
+    pub centre: Vec<String>,
+    /// Samples in each cell, the same points in all of them [default: 8 million descents shared among the
+    /// cells, at most 100000 a cell]
+    #[arg(long, value_name = "N", conflicts_with = "nominal")]
+    pub samples: Option<String>,
+    /// Outcomes and margins of nominal descents only, no probabilities
+    #[arg(long)]
+    pub nominal: bool,
+    /// Seed of every random stream, in place of the study's
+    #[arg(long, value_name = "S")]
+    pub seed: Option<String>,
+    /// Directory for report, figures and table [default: runs/<study>-sweep]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Number of threads [default: one a core]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Print the findings as one JSON object in SI, and nothing else, on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct TightenArguments {
     #[command(flatten)]
     pub study: StudyArguments,
     /// Largest acceptable probability of any breach, in place of the study's: 0.01 or "1 %"
     #[arg(long, value_name = "P")]
     pub target: Option<String>,
+    /// Let a design value move at no cost, in place of the study's (fluid.nominal_viscosity="90000 cSt..140000 cSt");
+    /// may be given several times; "none" holds every one
+    #[arg(long = "move", value_name = "PATH=LEAST..MOST")]
+    pub moves: Vec<String>,
     /// Directory for tighten.json and tighten.md
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -134,57 +200,15 @@ pub(super) struct TightenArguments {
 }
 
 #[derive(Debug, Args)]
-pub(super) struct CalibrateArguments {
+pub(super) struct PaperArguments {
     #[command(flatten)]
     pub study: StudyArguments,
-    /// A measured run, CSV with units in its header or Parquet in SI; once for each run
-    #[arg(long, value_name = "FILE", required = true)]
-    pub data: Vec<PathBuf>,
-    /// A measured run that is predicted only, to check the posterior
-    #[arg(long, value_name = "FILE")]
-    pub hold_out: Vec<PathBuf>,
-    /// What drives the predictions: force, speed [default: force where it was recorded]
-    #[arg(long, value_name = "QUANTITY")]
-    pub drive: Option<String>,
-    /// Standard deviation of a channel's sensor, such as speed="0.02 ft/s"; estimated where not stated
-    #[arg(long, value_name = "CHANNEL=VALUE")]
-    pub sensor_sd: Vec<String>,
-    /// What the model's discrepancy is expected to be, as a share of each channel's range; none for a
-    /// model that is taken as right [default: 1 %]
-    #[arg(long, value_name = "SHARE")]
-    pub discrepancy: Option<String>,
-    /// Noise with heavy tails, Student's t with so many degrees of freedom: outliers count less
-    #[arg(long, value_name = "DF", value_parser = degrees_of_freedom)]
-    pub heavy_tails: Option<f64>,
-    /// Calibrate even if a unit seems wrong or the card cannot explain the readings
-    #[arg(long)]
-    pub accept: bool,
-    /// Particles of each replicate [default: 1000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(100..=1_000_000))]
-    pub particles: Option<u32>,
-    /// Independent replicates of the sampling [default: 4]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=100))]
-    pub replicates: Option<u32>,
-    /// Seed of every random stream, in place of the study's
-    #[arg(long, value_name = "S")]
-    pub seed: Option<String>,
-    /// Directory for report, joint sample and cards [default: runs/<study>-calibrated]
+    /// Directory for report.md, paper.json and the figures
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Number of threads [default: one a core]; the results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
     /// Print the findings as one JSON object in SI, and nothing else, on standard output
     #[arg(long)]
     pub json: bool,
-}
-
-/// Degrees of freedom of Student's t: more than two, for the variance to exist.
-fn degrees_of_freedom(text: &str) -> std::result::Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 2.0 && value <= 1e6 => Ok(value),
-        _ => Err("expected a number above 2, such as 4".to_owned()),
-    }
 }
 
 #[derive(Debug, Args)]

@@ -1,6 +1,6 @@
 //! `reeldown calibrate`: rig runs in, a posterior card out.
 
-use super::arguments::CalibrateArguments;
+use super::calibrate_arguments::CalibrateArguments;
 use super::output::{say, say_error};
 use super::run::quoted;
 use super::{Ending, done};

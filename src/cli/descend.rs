@@ -64,12 +64,13 @@ pub(super) fn integrate(design: &Design, model: Model, trace: Option<&Path>) -> 
     let Trajectory { samples, .. } =
         reference::trajectory(&coefficients, model, REFERENCE_TOLERANCE, TRACE_STEP_S)
             .map_err(cannot_integrate)?;
-    write_trace(path, model, &samples)?;
+    write_trace(path, model.name(), &samples)?;
     // The outcome is that of the descent without a limit on its steps, whatever is traced.
     reference::descend(&coefficients, model, REFERENCE_TOLERANCE).map_err(cannot_integrate)
 }
 
-fn write_trace(path: &Path, model: Model, samples: &[Sample]) -> Result<()> {
+/// Writes the course of a descent or of a run on the rig.
+pub(super) fn write_trace(path: &Path, model: &str, samples: &[Sample]) -> Result<()> {
     let field =
         |read: &dyn Fn(&Sample) -> Option<f64>| Field::Number(samples.iter().map(read).collect());
     let mut columns = vec![
@@ -85,7 +86,7 @@ fn write_trace(path: &Path, model: Model, samples: &[Sample]) -> Result<()> {
     columns.push(("housing_temperature_k".to_owned(), field(&|s| Some(s.temperatures_k[2]))));
     let metadata = vec![
         ("reeldown.version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
-        ("reeldown.model".to_owned(), model.name().to_owned()),
+        ("reeldown.model".to_owned(), model.to_owned()),
     ];
     write_table(path, columns, metadata)
 }

@@ -2,14 +2,21 @@
 
 mod arguments;
 mod calibrate;
+mod calibrate_arguments;
 mod check;
+mod compare;
 mod descend;
 mod describe;
 mod diagnostics;
 mod output;
+mod paper;
 mod parentage;
 mod replay;
+mod rig;
+mod rig_arguments;
 mod run;
+mod sensitivity_table;
+mod sweep;
 mod tighten;
 mod trade_tables;
 mod watch;
@@ -65,7 +72,11 @@ fn carry_out(arguments: Arguments) -> Result<Ending> {
         Some(Command::Run(run)) => run::run(&run),
         Some(Command::Descend(descend)) => descend::descend(&descend),
         Some(Command::Calibrate(calibrate)) => calibrate::calibrate(&calibrate),
+        Some(Command::Compare(compare)) => compare::compare(&compare),
+        Some(Command::Sweep(sweep)) => sweep::sweep(&sweep),
         Some(Command::Tighten(tighten)) => tighten::tighten(&tighten),
+        Some(Command::Paper(paper)) => paper::paper(&paper),
+        Some(Command::Rig(rig)) => rig::rig(&rig),
         Some(Command::Replay(replay)) => replay::replay(&replay),
         Some(Command::Check(check)) => check::check(&check),
         Some(Command::Schema { kind }) => describe::schema(kind),

@@ -44,13 +44,15 @@ pub(super) fn of(study: &Study) -> Parentage {
 }
 
 /// The digest of everything that fixes a row of the table: the resolved study without its requirement,
-/// its stopping rule, its sensitivity, reliability and trade plans and, for a design whose longer run begins with the shorter, its
-/// number of samples.
+/// its stopping rule, its sensitivity, reliability, trade and tightening plans, what its inputs cost, when they are
+/// known and how they are grouped, and, for a design whose longer run begins with the shorter, without its number
+/// of samples.
 pub(super) fn row_digest(study: &Study) -> String {
     let mut rows = study.clone();
     rows.requirement = None;
     rows.sensitivity.base_samples = 0;
     rows.sensitivity.bootstrap = 0;
+    rows.sensitivity.pairs.clear();
     rows.reliability = Default::default();
     rows.trade.samples = 0;
     rows.tighten.target = None;
@@ -58,6 +60,9 @@ pub(super) fn row_digest(study: &Study) -> String {
     rows.tighten.design.clear();
     for input in &mut rows.inputs {
         input.cost = Default::default();
+        // When it becomes known, and with what it is looked at, moves no sample.
+        input.known = crate::study::Known::Never;
+        input.group = None;
     }
     rows.sampling.stopping = None;
     if rows.sampling.design != Design::LatinHypercube {

@@ -2,18 +2,16 @@
 
 use super::arguments::RunArguments;
 use super::output::{say, say_error, stdout_style};
+use super::sensitivity_table::{SENSITIVITY, write_sensitivity};
 use super::trade_tables::{TRADE, write_trade};
 use super::watch::{Watch, stop_on_interrupt};
 use super::{Ending, parentage, replay};
 use crate::campaign::{self, Looks, Progress, ROW_GROUP, Record, RowGroups};
 use crate::error::{Error, Result};
-use crate::findings::{self, DriversFinding, Evidence, Findings, VerdictWord};
-use crate::numerics::interval::Estimate;
+use crate::findings::{self, Evidence, Findings, VerdictWord};
 use crate::outcomes::OutcomeTable;
 use crate::render;
-use crate::store::{
-    Field, OutcomesReader, OutcomesWriter, Parentage, refuse_obstacle, write_table, write_text,
-};
+use crate::store::{OutcomesReader, OutcomesWriter, Parentage, refuse_obstacle, write_text};
 use crate::study::Study;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -29,8 +27,6 @@ const REPORT: &str = "report.md";
 const REPORT_HTML: &str = "report.html";
 /// The directory of its figures.
 const FIGURES: &str = "figures";
-/// The table of sensitivity indices.
-const SENSITIVITY: &str = "sensitivity.parquet";
 /// What may differ between two runs of one study.
 const PROVENANCE: &str = "provenance.json";
 
@@ -81,9 +77,7 @@ impl Run<'_> {
             match campaign::run_pick_freeze(self.study, &progress) {
                 Ok(Some(design)) => Ok(design),
                 Ok(None) if progress.stopping() => return Ok(self.interrupted(samples, true)),
-                Ok(None) => {
-                    Err("the study asks for none (sensitivity.base_samples = 0)".to_owned())
-                }
+                Ok(None) => Err(NO_SENSITIVITY.to_owned()),
                 Err(reason) => Err(reason.to_string()),
             }
         };
@@ -91,15 +85,19 @@ impl Run<'_> {
         if progress.stopping() {
             return Ok(self.interrupted(samples, true));
         }
-        let (shapley, trade, known) = {
+        let (given, screening, shapley, trade, known) = {
             let descents = campaign::shapley::shapley_descents(self.study)
+                + campaign::given_sample::given_descents(self.study)
+                + campaign::screening::screening_descents(self.study)
                 + campaign::trade::trade_descents(self.study)
                 + campaign::known::known_descents(self.study);
             let _watch = Watch::start(&progress, descents, "trade of tolerances");
             (
+                campaign::given_sample::run_given(self.study, &record, &progress),
+                campaign::screening::run_screening(self.study, &progress),
                 campaign::shapley::run_shapley(self.study, &progress),
                 campaign::trade::run_trade(self.study, &record, &progress),
-                campaign::known::run_known(self.study, samples, &progress),
+                campaign::known::run_known(self.study, &progress),
             )
         };
         if progress.stopping() {
@@ -113,14 +111,17 @@ impl Run<'_> {
             nominal: campaign::nominal(self.study),
             verification: campaign::verify(self.study, &record)?,
             pick_freeze,
-            shapley: or_reason(shapley, "the study asks for none (sensitivity.base_samples = 0)"),
+            shapley: or_reason(shapley, NO_SENSITIVITY),
+            given: or_reason(given, NO_SENSITIVITY),
+            screening: or_reason(screening, NO_SENSITIVITY),
+            slopes: campaign::screening::slopes(self.study),
             trade: or_reason(trade, NO_TRADE),
             known: or_reason(known, NO_TRADE),
             command: self.command(),
         })?;
         self.write(&findings)?;
         let times = (begun.elapsed().as_secs_f64(), sampled.as_secs_f64());
-        self.write_provenance(times, computed, samples - computed)?;
+        self.write_provenance(times, progress.done(), (computed, samples - computed))?;
         self.report(&findings)
     }
 
@@ -213,7 +214,8 @@ impl Run<'_> {
 
     fn sensitivity_descents(&self) -> u64 {
         let factors = campaign::factors(self.study).len() as u64;
-        self.study.sensitivity.base_samples * (2 + factors)
+        let pairs = self.study.sensitivity.pairs.len() as u64;
+        self.study.sensitivity.base_samples * (2 + factors + pairs)
     }
 
     /// The command that gives the same numbers.
@@ -232,20 +234,20 @@ impl Run<'_> {
 
     fn write(&self, findings: &Findings) -> Result<()> {
         let at = |name: &str| self.directory.join(name);
-        write_text(&at(FINDINGS), &json(findings)?)?;
+        write_text(&at(FINDINGS), &render::json(findings)?)?;
         let figures = render::figures(findings);
         for figure in figures.all() {
             write_text(&at(FIGURES).join(figure.file_name()), &figure.svg)?;
         }
         write_text(&at(REPORT), &render::markdown(findings, &figures)?)?;
         write_text(&at(REPORT_HTML), &render::html(findings, &figures)?)?;
-        write_sensitivity(&at(SENSITIVITY), &findings.drivers, &self.parentage)?;
+        write_sensitivity(&at(SENSITIVITY), findings, &self.parentage)?;
         write_trade(&at(TRADE), findings, &self.parentage)
     }
 
     /// What may differ between two runs of the same study: kept out of everything else.
-    fn write_provenance(&self, times: (f64, f64), computed: u64, read: u64) -> Result<()> {
-        let (seconds, sampling) = times;
+    fn write_provenance(&self, times: (f64, f64), descents: u64, rows: (u64, u64)) -> Result<()> {
+        let ((seconds, sampling), (computed, read)) = (times, rows);
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |t| t.as_secs());
         let provenance = serde_json::json!({
             "version": env!("CARGO_PKG_VERSION"),
@@ -257,6 +259,7 @@ impl Run<'_> {
             "threads": self.arguments.threads.map_or_else(campaign::threads, usize::from),
             "wall_time_s": seconds,
             "sampling_time_s": sampling,
+            "descents_computed": descents,
             "samples_computed": computed,
             "samples_read_again": read,
             "study_digest": self.study.digest(),
@@ -266,7 +269,7 @@ impl Run<'_> {
 
     fn report(&self, findings: &Findings) -> Result<Ending> {
         if self.arguments.json {
-            say(&json(findings)?)?;
+            say(&render::json(findings)?)?;
         } else if !self.arguments.quiet {
             let summary = render::terminal(findings, stdout_style());
             say(&format!("{summary}\nreport: {}", self.directory.join(REPORT).display()))?;
@@ -308,6 +311,8 @@ impl Rows {
     }
 }
 
+/// Why there are no indices where a study has none.
+const NO_SENSITIVITY: &str = "the study asks for none (sensitivity.base_samples = 0)";
 /// Why there is no trade of tolerances where a study has none.
 const NO_TRADE: &str = "the study asks for none (trade.samples = 0) or states no limit";
 
@@ -319,12 +324,6 @@ fn or_reason<T>(found: Result<Option<T>>, none: &str) -> std::result::Result<T, 
     }
 }
 
-fn json(findings: &Findings) -> Result<String> {
-    serde_json::to_string_pretty(findings)
-        .map(|text| text + "\n")
-        .map_err(|reason| Error::argument(format!("the findings cannot be written: {reason}")))
-}
-
 /// A word of a command line, quoted if the shell would take it apart.
 pub(super) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+".contains(c);
@@ -332,38 +331,4 @@ pub(super) fn quoted(word: &str) -> String {
         return word.to_owned();
     }
     format!("'{}'", word.replace('\'', r"'\''"))
-}
-
-/// Every index of every output, one row each.
-fn write_sensitivity(path: &Path, drivers: &DriversFinding, parentage: &Parentage) -> Result<()> {
-    let rows: Vec<_> = drivers
-        .outputs
-        .iter()
-        .flat_map(|output| output.factors.iter().map(move |factor| (output, factor)))
-        .flat_map(|(output, factor)| {
-            let both = [("first", &factor.indices.first), ("total", &factor.indices.total)];
-            both.map(|(order, estimate)| (output, factor, order, estimate))
-        })
-        .collect();
-    let text =
-        |read: &dyn Fn(usize) -> Option<String>| Field::Text((0..rows.len()).map(read).collect());
-    let number = |read: &dyn Fn(&Estimate) -> Option<f64>| {
-        Field::Number(rows.iter().map(|(_, _, _, estimate)| read(estimate)).collect())
-    };
-    let columns = vec![
-        ("output".to_owned(), text(&|k| Some(rows[k].0.name.clone()))),
-        ("factor".to_owned(), text(&|k| Some(rows[k].1.name.clone()))),
-        ("inputs".to_owned(), Field::Count(rows.iter().map(|r| r.1.inputs as u64).collect())),
-        ("order".to_owned(), text(&|k| Some(rows[k].2.to_owned()))),
-        ("index".to_owned(), number(&|e| e.value)),
-        ("standard_error".to_owned(), number(&|e| e.standard_error)),
-        ("lower_95".to_owned(), number(&|e| e.interval.interval().map(|i| i.lower))),
-        ("upper_95".to_owned(), number(&|e| e.interval.interval().map(|i| i.upper))),
-        ("why_no_interval".to_owned(), text(&|k| rows[k].3.interval.why_none().map(str::to_owned))),
-        (
-            "rows_left_out".to_owned(),
-            Field::Count(rows.iter().map(|r| r.1.indices.rows_left_out as u64).collect()),
-        ),
-    ];
-    write_table(path, columns, parentage.entries())
 }

@@ -19,7 +19,8 @@ const EVALUATIONS: u64 = 250;
 /// Finds, confirms and shows a plan.
 pub(super) fn tighten(arguments: &TightenArguments) -> Result<Ending> {
     let target = arguments.target.iter().map(|p| ("--target", format!("tighten.target={p}")));
-    let study = arguments.study.load(&target.collect::<Vec<_>>())?;
+    let moves = moves(&arguments.moves)?.map(|statement| ("--move", statement));
+    let study = arguments.study.load(&target.chain(moves).collect::<Vec<_>>())?;
     study.design.validate()?;
     let progress = Arc::new(Progress::default());
     stop_on_interrupt(&progress)?;
@@ -33,18 +34,50 @@ pub(super) fn tighten(arguments: &TightenArguments) -> Result<Ending> {
         return Ok(Ending::Interrupted);
     };
     let finding = findings(&study, &found, command(arguments))?;
-    let json = serde_json::to_string_pretty(&finding)
-        .map_err(|reason| Error::argument(format!("the plan cannot be written: {reason}")))?;
+    let json = render::json(&finding)?;
     if let Some(directory) = &arguments.out {
-        write_text(&directory.join("tighten.json"), &format!("{json}\n"))?;
+        write_text(&directory.join("tighten.json"), &json)?;
         write_text(&directory.join("tighten.md"), &render::tighten_markdown(&finding))?;
     }
     if arguments.json {
-        done(&json)?;
+        done(json.trim_end())?;
     } else {
         say(&render::tighten_terminal(&finding))?;
     }
     Ok(ending(&finding))
+}
+
+/// The design values that may move, as a statement about the study.
+fn moves(given: &[String]) -> Result<Option<String>> {
+    if given.is_empty() {
+        return Ok(None);
+    }
+    if given.iter().any(|text| text == "none") {
+        return match given.len() {
+            1 => Ok(Some("tighten.design={}".to_owned())),
+            _ => {
+                Err(Error::argument("--move none holds every design value: give nothing beside it"))
+            }
+        };
+    }
+    let ranges = given.iter().map(|text| {
+        let parts = text.split_once('=').and_then(|(path, range)| Some((path, range.split_once("..")?)));
+        let Some((path, (least, most))) = parts else {
+            return Err(Error::argument(format!(
+                "--move {text}: expected PATH=LEAST..MOST, such as fluid.nominal_viscosity=\"90000 cSt..140000 cSt\", \
+                 or none"
+            )));
+        };
+        let (path, mut least, most) = (path.trim(), least.trim().to_owned(), most.trim());
+        // One unit serves both ends.
+        let unit = most.trim_start_matches(|c: char| c.is_ascii_digit() || "+-._eE".contains(c)).trim();
+        if least.ends_with(|c: char| c.is_ascii_digit()) && !unit.is_empty() {
+            least = format!("{least} {unit}");
+        }
+        Ok(format!("{path:?} = [{least:?}, {most:?}]"))
+    });
+    let ranges = ranges.collect::<Result<Vec<_>>>()?;
+    Ok(Some(format!("tighten.design={{ {} }}", ranges.join(", "))))
 }
 
 fn ending(finding: &TightenFinding) -> Ending {
@@ -62,6 +95,7 @@ fn command(arguments: &TightenArguments) -> String {
         words.push(quoted(&study.display().to_string()));
     }
     words.extend(arguments.target.iter().map(|target| format!("--target {}", quoted(target))));
+    words.extend(arguments.moves.iter().map(|range| format!("--move {}", quoted(range))));
     words.extend(arguments.study.set.iter().map(|set| format!("--set {}", quoted(set))));
     words.join(" ")
 }

@@ -22,7 +22,7 @@ pub struct DerivativeFinding {
     pub factor: String,
     /// `mean` or `spread`.
     pub parameter: &'static str,
-    /// dP/dθ by the score function over all samples of the run, per SI unit; of a lognormal law's spread
+    /// dP/dθ by the score function, per SI unit; of a lognormal law's spread
     /// per unit of the logarithm's standard deviation. Truncation limits are held.
     pub derivative: Estimate,
     /// The same by a central difference with common random numbers, where it was computed.
@@ -103,22 +103,29 @@ fn scaled(estimate: &Estimate, by: f64) -> Estimate {
     }
 }
 
-/// A step that an engineer would speak of: the power of ten below half the spread, in the paper's unit.
+/// A step of a law's parameter that an engineer would speak of, in words with the parameter.
 fn step_of(law: &Law, quantity: Quantity, parameter: Parameter) -> (f64, String) {
-    let relative = matches!(law, Law::Lognormal { .. }) && parameter == Parameter::Spread;
-    let unit = display(quantity.of_difference());
-    let (spread, scale) = if relative { (law.spread(), 1.0) } else { (law.sd(), unit.scale) };
-    let shown = power_of_ten_below(0.5 * spread * scale);
     let of = match parameter {
         Parameter::Mean => "of mean",
         Parameter::Spread => "of standard deviation",
     };
-    let text = match (relative, unit.symbol) {
-        (true, _) => format!("{} % {of}", number(100.0 * shown, 3)),
-        (false, "") => format!("{} {of}", number(shown, 3)),
-        (false, symbol) => format!("{} {symbol} {of}", number(shown, 3)),
+    let (step, text) = match law {
+        Law::Lognormal { .. } if parameter == Parameter::Spread => {
+            let step = power_of_ten_below(0.5 * law.spread());
+            (step, format!("{} %", number(100.0 * step, 3)))
+        }
+        law => step_below(0.5 * law.sd(), quantity),
     };
-    (shown / scale, text)
+    (step, format!("{text} {of}"))
+}
+
+/// The power of ten below a size, in the paper's unit: SI, and in words.
+pub(super) fn step_below(size: f64, quantity: Quantity) -> (f64, String) {
+    let unit = display(quantity.of_difference());
+    let shown = power_of_ten_below(size * unit.scale);
+    let text = number(shown, 3);
+    let text = if unit.symbol.is_empty() { text } else { format!("{text} {}", unit.symbol) };
+    (shown / unit.scale, text)
 }
 
 fn power_of_ten_below(x: f64) -> f64 {

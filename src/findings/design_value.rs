@@ -92,7 +92,7 @@ pub(super) fn design_value(
 
 /// The least point of a parabola through ln P over the settings, with its error by leaving out one of
 /// [`GROUPS`] groups of rows at a time (the delete-a-group jackknife).
-fn best_value(
+pub(super) fn best_value(
     xs: &[f64],
     shares: &dyn Fn(Option<usize>) -> Vec<f64>,
     range: (f64, f64),

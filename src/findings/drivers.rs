@@ -5,7 +5,7 @@ use crate::campaign::{PickFreezeOutcomes, in_parallel};
 use crate::descent::OutcomeQuantity;
 use crate::error::Result;
 use crate::sensitivity::bootstrap::Resampling;
-use crate::sensitivity::sobol_indices::{FactorIndices, sobol_indices};
+use crate::sensitivity::sobol_indices::{FactorIndices, PairIndices, sobol_indices};
 use crate::study::Study;
 use serde::Serialize;
 
@@ -39,6 +39,20 @@ pub struct DriverOutput {
     pub variance: Option<f64>,
     /// One entry a factor.
     pub factors: Vec<FactorFinding>,
+    /// One entry a pair that was asked for.
+    pub pairs: Vec<PairFinding>,
+}
+
+/// What two factors do together to one output.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PairFinding {
+    /// Paths of the inputs, or names of the groups.
+    pub factors: (String, String),
+    /// How many inputs they are.
+    pub inputs: usize,
+    /// The indices.
+    #[serde(flatten)]
+    pub indices: PairIndices,
 }
 
 /// One factor's share in one output.
@@ -86,7 +100,17 @@ pub(super) fn drivers(
                     && columns.iter().all(|column| other.columns.contains(column))
             })
         };
+        let known = design.plan.factors();
+        let pairs = indices.pairs.into_iter().map(|indices| {
+            let (one, other) = (&known[indices.factors.0], &known[indices.factors.1]);
+            PairFinding {
+                factors: (one.name.clone(), other.name.clone()),
+                inputs: one.columns.len() + other.columns.len(),
+                indices,
+            }
+        });
         Ok(DriverOutput {
+            pairs: pairs.collect(),
             name: output.name(study),
             title: output.title(study),
             breach: !matches!(output, Output::Outcome(_)),

@@ -4,7 +4,7 @@
 use super::CONFIDENCE;
 use super::trade::proportion;
 use crate::campaign::common_numbers::{Breaches, Event};
-use crate::campaign::known::{Chart, INNER, KnownOutcomes, Map, Stage};
+use crate::campaign::known::{Chart, INNER, KnownOutcomes, Map, Second, Stage};
 use crate::error::Result;
 use crate::numerics::interval::{Earned, Estimate, Interval};
 use crate::numerics::special::student;
@@ -22,15 +22,25 @@ pub struct KnownFinding {
     pub stages: Vec<StageFinding>,
     /// One chart for every input measured on the day.
     pub charts: Vec<GoChart>,
-    /// The first two inputs measured on the day, together.
+    /// The first input measured on the day with the second, or with the viscosity of the lot.
     pub map: Option<GoMap>,
 }
 
 /// Whether to go, given two measured values.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GoMap {
-    /// Paths of the two inputs.
+    /// Paths of the two.
     pub paths: (String, String),
+    /// Whether the second is a design value, measured in the lot that is filled in.
+    pub lot: bool,
+    /// Its value in the study, if it is one.
+    pub present: Option<f64>,
+    /// Largest acceptable probability of any breach; `None` without a requirement.
+    pub allowed: Option<f64>,
+    /// Confidence of `go` and `no_go`, each cell by itself.
+    pub confidence: Option<f64>,
+    /// Samples behind each cell.
+    pub samples: u64,
     /// Measured values of the first, SI.
     pub first: Vec<f64>,
     /// Measured values of the second, SI.
@@ -146,19 +156,30 @@ fn go_map(study: &Study, map: &Map) -> Result<GoMap> {
         Ok((proportion(&counts)?, answer(requirement.as_ref(), &counts)?))
     };
     Ok(GoMap {
-        paths: (path(map.inputs.0), path(map.inputs.1)),
+        paths: match map.beside {
+            Second::Input(other) => (path(map.input), path(other)),
+            Second::Lot(target) => (path(map.input), target.path()),
+        },
+        lot: matches!(map.beside, Second::Lot(_)),
+        present: match map.beside {
+            Second::Input(_) => None,
+            Second::Lot(target) => Some(study.design.at(target)),
+        },
+        allowed: requirement.map(|requirement| requirement.failure_limit()),
+        confidence: requirement.map(|requirement| requirement.confidence),
+        samples: map.samples,
         first: map.first.clone(),
         second: map.second.clone(),
         cells: map.breaches.iter().map(cell).collect::<Result<_>>()?,
     })
 }
 
-fn stated(study: &Study) -> Result<Option<Requirement>> {
+pub(super) fn stated(study: &Study) -> Result<Option<Requirement>> {
     let stated = study.requirement;
     stated.map(|stated| Requirement::new(stated.reliability, stated.confidence)).transpose()
 }
 
-fn answer(requirement: Option<&Requirement>, counts: &Proportion) -> Result<GoAnswer> {
+pub(super) fn answer(requirement: Option<&Requirement>, counts: &Proportion) -> Result<GoAnswer> {
     let Some(requirement) = requirement else { return Ok(GoAnswer::NoRequirement) };
     Ok(match requirement.verdict(counts)?.verdict {
         Verdict::Met => GoAnswer::Go,

@@ -2,6 +2,9 @@
 //! JSON holds. Numbers are SI; the renderer chooses units.
 
 pub mod calibration;
+pub mod compare;
+mod compare_findings;
+mod compare_studies;
 mod demonstration;
 pub mod derivatives;
 pub mod design_value;
@@ -10,15 +13,22 @@ mod figures;
 mod inputs;
 pub mod known;
 mod margins;
+pub mod measures;
 mod numerical;
+pub mod paper;
 mod probabilities;
 mod rare;
+pub mod rig;
 mod sequence;
 pub mod shapley;
+pub mod sweep;
+pub mod sweep_best;
 pub mod tighten;
 pub mod trade;
 
+use crate::campaign::given_sample::GivenSample;
 use crate::campaign::known::KnownOutcomes;
+use crate::campaign::screening::{ScreeningOutcomes, Slopes};
 use crate::campaign::shapley::ShapleyOutcomes;
 use crate::campaign::trade::TradeOutcomes;
 use crate::campaign::{self, PickFreezeOutcomes, RareEvent, Record, Verification};
@@ -30,7 +40,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 pub use demonstration::{Decision, VerdictFinding, VerdictWord};
-pub use drivers::{DriverOutput, DriversFinding, FactorFinding};
+pub use drivers::{DriverOutput, DriversFinding, FactorFinding, PairFinding};
 pub use figures::{
     Checkpoint, ConstantTemperature, Convergence, Distribution, Exceedance, Fan, FanBand,
     FigureData, Interaction, InteractionInput, PaperRuns, paper_runs,
@@ -38,11 +48,12 @@ pub use figures::{
 pub use inputs::InputFinding;
 pub use known::KnownFinding;
 pub use margins::{MarginFinding, MarginQuantile};
+pub use measures::MeasuresFinding;
 pub use numerical::{NumericalFinding, NumericalLimit};
 pub use probabilities::{EventKind, ProbabilityFinding};
 pub use rare::{DesignPointFinding, DesignPointInput, RareFinding};
 pub use sequence::StoppingFinding;
-pub use shapley::{BreachFinding, ShapleyFinding, ShapleyOutput};
+pub use shapley::{ShapleyFinding, ShapleyOutput};
 pub use trade::TradeFinding;
 
 /// Confidence of the two-sided intervals.
@@ -73,8 +84,8 @@ pub struct Findings {
     pub drivers: DriversFinding,
     /// Every factor's fair share of the variance.
     pub shapley: ShapleyFinding,
-    /// Where the breaches of each event lie.
-    pub breaches: Vec<BreachFinding>,
+    /// Every other measure of what drives the outcomes and the breaches.
+    pub measures: MeasuresFinding,
     /// What buying down a tolerance is worth.
     pub trade: TradeFinding,
     /// What becomes known when, and what that settles.
@@ -189,6 +200,12 @@ pub struct Evidence<'a> {
     pub pick_freeze: std::result::Result<PickFreezeOutcomes, String>,
     /// Its walks of the Shapley effects, or why there are none.
     pub shapley: std::result::Result<ShapleyOutcomes, String>,
+    /// Its first samples read again, and those that breach, or why they were not.
+    pub given: std::result::Result<GivenSample, String>,
+    /// Its screening, or why there is none.
+    pub screening: std::result::Result<ScreeningOutcomes, String>,
+    /// Derivatives of its outcomes.
+    pub slopes: Slopes,
     /// Its trade of tolerances, or why there is none.
     pub trade: std::result::Result<TradeOutcomes<'a>, String>,
     /// What becomes known when, or why that is not told.
@@ -208,6 +225,7 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
     drawn.sampling.samples = record.counts().samples();
     let sampler = campaign::sampler(&drawn)?;
     let drivers = drivers::drivers(study, &evidence.pick_freeze)?;
+    let shapley = shapley::shapley(study, &evidence.shapley)?;
     Ok(Findings {
         format: 1,
         title: study.title.clone(),
@@ -219,9 +237,16 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
         outcomes: OutcomeQuantity::ALL.map(|quantity| outcome(record, quantity)).to_vec(),
         nominal: nominal(study, &evidence.nominal),
         figures: figures::figures(study, record, &drivers)?,
+        measures: measures::measures(
+            study,
+            &evidence.given,
+            &evidence.screening,
+            &evidence.slopes,
+            &drivers,
+            &shapley,
+        )?,
         drivers,
-        shapley: shapley::shapley(study, &evidence.shapley)?,
-        breaches: shapley::breaches(study, &evidence.trade)?,
+        shapley,
         trade: trade::trade(study, &evidence.trade)?,
         known: known::known(study, &evidence.known)?,
         exceptions: exceptions(record),

@@ -1,14 +1,12 @@
-//! Every factor's fair share of the variance, also where inputs are correlated; and where the breaches lie.
+//! Every factor's fair share of the variance, also where inputs are correlated.
 
 use super::CONFIDENCE;
 use crate::campaign::common_numbers::Event;
 use crate::campaign::in_parallel;
 use crate::campaign::shapley::ShapleyOutcomes;
-use crate::campaign::trade::TradeOutcomes;
 use crate::descent::OutcomeQuantity;
 use crate::error::Result;
 use crate::numerics::interval::Estimate;
-use crate::sensitivity::target::{BreachSensitivity, breach_sensitivities};
 use crate::study::Study;
 use serde::Serialize;
 
@@ -36,15 +34,6 @@ pub struct ShapleyOutput {
     pub left_out: usize,
     /// One entry a factor: its name and its share; the shares add up to one.
     pub effects: Vec<(String, Estimate)>,
-}
-
-/// Where the breaches of one event lie.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct BreachFinding {
-    /// The event: a limit's name, or `any`.
-    pub event: String,
-    /// One entry an input: its path and what it has to do with the event.
-    pub inputs: Vec<(String, BreachSensitivity)>,
 }
 
 /// The Shapley effects of a study, or why there are none.
@@ -100,31 +89,4 @@ fn any_breach(study: &Study, outcomes: &ShapleyOutcomes) -> Vec<f64> {
         },
     );
     breaches.indicator(Event::Any)
-}
-
-/// Where the breaches of every event lie, from samples of the run.
-pub(super) fn breaches(
-    study: &Study,
-    outcomes: &std::result::Result<TradeOutcomes<'_>, String>,
-) -> Result<Vec<BreachFinding>> {
-    let Ok(outcomes) = outcomes else { return Ok(Vec::new()) };
-    let inputs = outcomes.sample.inputs();
-    let columns: Vec<usize> = (0..study.inputs.len()).collect();
-    let uniforms = in_parallel(&columns, |&j| -> Vec<f64> {
-        let marginal = &study.inputs[j].marginal;
-        let open = |u: f64| u.clamp(f64::EPSILON, 1.0 - f64::EPSILON);
-        inputs.column(j).iter().map(|&x| open(marginal.cdf(x))).collect()
-    });
-    let uniforms: Vec<&[f64]> = uniforms.iter().map(Vec::as_slice).collect();
-    let events: Vec<(Event, String)> = (0..study.limits.len())
-        .map(|i| (Event::Limit(i), study.limits[i].name()))
-        .chain([(Event::Any, "any".to_owned())])
-        .collect();
-    let found = in_parallel(&events, |(event, name)| {
-        let indicator = outcomes.base.indicator(*event);
-        let found = breach_sensitivities(&uniforms, &indicator, CONFIDENCE)?;
-        let paths = study.inputs.iter().map(|input| input.target.path());
-        Ok(BreachFinding { event: name.clone(), inputs: paths.zip(found).collect() })
-    });
-    found.into_iter().collect()
 }

@@ -8,6 +8,7 @@ use crate::campaign::tighten::Tightening;
 use crate::error::Result;
 use crate::numerics::interval::Estimate;
 use crate::reliability::allocation::Allocation;
+use crate::reliability::cheaper_plans::Proof;
 use crate::reliability::demonstration::{Demonstration, Verdict};
 use crate::study::Study;
 use crate::uncertainty::Law;
@@ -50,8 +51,27 @@ pub struct TightenFinding {
     pub descents: u64,
     /// Plans evaluated by the last search.
     pub evaluations: u64,
+    /// Whether the plan is the cheapest; `None` without a plan.
+    pub proof: Option<ProofFinding>,
     /// What it takes to have the same numbers again.
     pub reproduction: ReproductionFinding,
+}
+
+/// How sure it is that no cheaper plan would do.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ProofFinding {
+    /// Plans that cost less and were refuted: half halvings and grades.
+    pub refuted: usize,
+    /// Settings of the design values at which each was.
+    pub settings: usize,
+    /// No plan of half halvings and grades that costs less than this reaches the aim.
+    pub none_below: f64,
+    /// Whether every cheaper plan was looked at.
+    pub complete: bool,
+    /// The aim on the search's sample: below the target by what a confirming run may come out too high.
+    pub aim: f64,
+    /// All that in a sentence.
+    pub statement: String,
 }
 
 /// Tightenings and design values with what they cost and give.
@@ -166,6 +186,7 @@ pub fn tighten(study: &Study, found: &Tightening, command: String) -> Result<Tig
         samples: found.samples,
         descents: found.descents,
         evaluations: found.search.evaluations,
+        proof: found.proof.as_ref().map(|proof| proof_of(found, proof)),
         reproduction: ReproductionFinding {
             version: env!("CARGO_PKG_VERSION"),
             seed: study.sampling.seed,
@@ -176,6 +197,48 @@ pub fn tighten(study: &Study, found: &Tightening, command: String) -> Result<Tig
     };
     finding.statement = statement(&finding);
     Ok(finding)
+}
+
+fn proof_of(found: &Tightening, proof: &Proof) -> ProofFinding {
+    let cost = found.confirmation.plan.cost;
+    let percent = super::demonstration::percent;
+    let refuted = match (proof.refuted, found.settings) {
+        (0, _) => "There is none that costs less".to_owned(),
+        (plans, 1) => format!("{plans} plans that cost less were refuted one by one"),
+        (plans, settings) => format!(
+            "{plans} plans that cost less were refuted one by one, each at {settings} settings of the design values"
+        ),
+    };
+    let on = format!(
+        "{refuted}, all by more breaches on the search's {} samples than {} (the target, less what a confirming run may come \
+         out higher)",
+        found.samples,
+        percent(found.aim)
+    );
+    let statement = match proof.complete {
+        true if proof.none_below >= cost - 1e-9 => format!(
+            "Exhaustive search: no plan of half halvings and purchasable grades costs less than {cost:.2} and reaches the \
+             aim; spreads between half halvings were trimmed, not searched. {on}."
+        ),
+        true => format!(
+            "Exhaustive search: no plan of half halvings and purchasable grades costs less than {:.2} and reaches the \
+             aim; spreads between half halvings were trimmed, not searched. {on}.",
+            proof.none_below
+        ),
+        false => format!(
+            "The cheaper plans are too many to refute all: none that costs less than {:.2} does, and between that and \
+             {cost:.2} the plan is good, not proven cheapest (greedy with exchanges). {on}.",
+            proof.none_below
+        ),
+    };
+    ProofFinding {
+        refuted: proof.refuted,
+        settings: found.settings,
+        none_below: proof.none_below,
+        complete: proof.complete,
+        aim: found.aim,
+        statement,
+    }
 }
 
 fn plan_of(study: &Study, found: &Tightening, allocation: &Allocation) -> PlanFinding {

@@ -33,6 +33,8 @@ pub struct TradeFinding {
     pub design: Vec<DesignValueFinding>,
     /// P(any breach) against the spread and the mean of every factor.
     pub curves: Vec<TradeCurve>,
+    /// Samples behind the score function's derivatives.
+    pub score_samples: u64,
     /// Derivatives of every breach probability.
     pub derivatives: Vec<DerivativeFinding>,
 }
@@ -100,6 +102,7 @@ pub(super) fn trade(
                 best_at_design: Vec::new(),
                 design: Vec::new(),
                 curves: Vec::new(),
+                score_samples: 0,
                 derivatives: Vec::new(),
             });
         }
@@ -144,6 +147,7 @@ pub(super) fn trade(
             .map(|sweep| design_value(study, outcomes, paired, sweep))
             .collect::<Result<_>>()?,
         curves: curves.into_iter().collect::<Result<_>>()?,
+        score_samples: outcomes.score_samples,
         derivatives: derivatives(study, outcomes, paired)?,
     })
 }

@@ -40,6 +40,18 @@ impl Columns {
         self.columns
     }
 
+    /// Points `first` to `first + rows − 1`, as a table of their own.
+    ///
+    /// # Panics
+    /// If there are not that many: a mistake of the caller's, not of an input.
+    pub fn rows_from(&self, first: usize, rows: usize) -> Columns {
+        let mut part = Vec::with_capacity(rows * self.columns);
+        for j in 0..self.columns {
+            part.extend_from_slice(&self.column(j)[first..first + rows]);
+        }
+        Columns { rows, columns: self.columns, data: part }
+    }
+
     /// Coordinate `j` of every point.
     pub fn column(&self, j: usize) -> &[f64] {
         &self.data[j * self.rows..(j + 1) * self.rows]

@@ -44,6 +44,13 @@ impl Target {
     }
 }
 
+impl Target {
+    /// Whether no other parameter has a say in which of its values are possible.
+    pub fn is_checked_alone(&self) -> bool {
+        ORDERED.iter().all(|&(small, large)| self.parameter != small && self.parameter != large)
+    }
+}
+
 /// Pairs of parameters of which the first must be the smaller.
 const ORDERED: [(Parameter, Parameter); 3] = [
     (Parameter::BrakeInnerRadius, Parameter::BrakeOuterRadius),

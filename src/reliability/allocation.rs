@@ -4,7 +4,8 @@
 //! own. Half a halving is bought at a time, where the logarithm of the probability falls most for the
 //! money, and free design values follow to their best after every purchase; then purchases are exchanged
 //! and trimmed for as long as that saves. For independent contributions to a variance the problem is convex
-//! and this finds its solution; in general it finds a good plan and proves nothing.
+//! and this finds its solution; in general it finds a good plan and proves nothing:
+//! [`super::cheaper_plans`] does.
 
 use crate::error::{Error, Result};
 use crate::numerics::elementary::{ln, pow};
@@ -188,6 +189,23 @@ pub fn cheapest<'p>(problem: &'p Problem, evaluate: &'p mut Evaluate<'p>) -> Res
         steps.push(plan.clone());
     }
     Ok(Search { plan, steps, everything, evaluations: searcher.evaluations })
+}
+
+/// A plan with the design values at their best near where they are, and without what the aim does not need.
+///
+/// # Errors
+/// What `evaluate` returns.
+pub fn trimmed<'p>(
+    problem: &'p Problem,
+    evaluate: &'p mut Evaluate<'p>,
+    spreads: Vec<f64>,
+    design: Vec<f64>,
+) -> Result<(Allocation, u64)> {
+    let mut searcher = Searcher { problem, evaluate, evaluations: 0 };
+    let plan = searcher.at(spreads, design)?;
+    let plan = searcher.with_best_design(plan, false)?;
+    let plan = searcher.trimmed(plan)?;
+    Ok((plan, searcher.evaluations))
 }
 
 struct Searcher<'p> {

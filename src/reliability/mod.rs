@@ -7,12 +7,14 @@
 pub mod allocation;
 pub mod binomial_tails;
 pub mod breach_counts;
+pub mod cheaper_plans;
 pub mod demonstration;
 pub mod normal_tolerance;
 pub mod paired;
 pub mod probability;
 pub mod quantiles;
 pub mod replicates;
+pub mod unpaired;
 
 // Limit states in standard-normal space and the methods that walk them.
 pub mod adaptive;

@@ -20,6 +20,8 @@ pub(super) struct DriverTable {
     pub title: String,
     pub sentence: String,
     pub rows: Vec<DriverRow>,
+    /// What pairs do together, where that was asked for.
+    pub pairs: Vec<String>,
     pub explanations: Vec<String>,
 }
 
@@ -101,6 +103,16 @@ fn driver_table(output: &DriverOutput) -> DriverTable {
             None => explained.push((text, vec![&factor.name])),
         }
     }
+    let pairs = output.pairs.iter().map(|pair| {
+        let note = pair.indices.explanation.as_ref().map_or(String::new(), |why| format!(": {why}"));
+        format!(
+            "`{}` and `{}` together explain {}, of which interaction between them (second order) {}{note}.",
+            pair.factors.0,
+            pair.factors.1,
+            index(&pair.indices.closed),
+            index(&pair.indices.interaction)
+        )
+    });
     let explanations: Vec<String> = explained
         .into_iter()
         .map(|(text, names)| format!("{}: {text}.", names.join(", ")))
@@ -120,6 +132,7 @@ fn driver_table(output: &DriverOutput) -> DriverTable {
                 total: index(&factor.indices.total),
             })
             .collect(),
+        pairs: pairs.collect(),
         explanations,
     }
 }

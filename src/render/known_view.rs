@@ -20,6 +20,7 @@ pub(super) struct Known {
 #[derive(Debug, Serialize)]
 pub(super) struct MapTable {
     pub title: String,
+    pub about: String,
     /// Values of the second input.
     pub header: Vec<String>,
     pub rows: Vec<TradeRow>,
@@ -92,19 +93,46 @@ fn map(map: &GoMap) -> MapTable {
     let cell = |(estimate, answer): &(Estimate, GoAnswer)| {
         format!("{} {}", percent(estimate), words(*answer))
     };
+    // A table has room for so many columns.
+    let step = map.second.len().div_ceil(TABLE_COLUMNS).max(1);
     MapTable {
         title: format!("`{first}` ({}) down, `{second}` ({}) across", unit(first), unit(second)),
-        header: map.second.iter().map(|&si| shown(second, si)).collect(),
+        about: about(map),
+        header: map.second.iter().step_by(step).map(|&si| shown(second, si)).collect(),
         rows: map
             .first
             .iter()
             .zip(map.cells.chunks(map.second.len().max(1)))
             .map(|(&si, cells)| TradeRow {
                 name: shown(first, si),
-                cells: cells.iter().map(cell).collect(),
+                cells: cells.iter().step_by(step).map(cell).collect(),
             })
             .collect(),
     }
+}
+
+/// Most columns of a map's table.
+const TABLE_COLUMNS: usize = 11;
+
+fn about(map: &GoMap) -> String {
+    let mut about = match (map.allowed, map.confidence) {
+        (Some(allowed), Some(confidence)) => format!(
+            "Go: P(any breach) ≤ {} is demonstrated at {} confidence given both values; no go: the opposite is, \
+             each cell by itself.",
+            probability(allowed),
+            probability(confidence)
+        ),
+        _ => "The study requires nothing.".to_owned(),
+    };
+    about += &format!(
+        " {} descents a cell, the same points in every cell; everything else is as uncertain as the card says.",
+        count(map.samples)
+    );
+    if map.lot {
+        about += " The second value is that of the lot of fluid at hand, as measured at rest and taken as exact; \
+                  what shear does to it stays uncertain.";
+    }
+    about
 }
 
 fn words(answer: GoAnswer) -> &'static str {

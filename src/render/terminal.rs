@@ -1,5 +1,6 @@
 //! The verdict and the probabilities for a terminal.
 
+use super::sketch::sketches;
 use super::tables::table;
 use super::view::{Rare, RareRow, view};
 use crate::findings::{Findings, VerdictWord};
@@ -84,6 +85,11 @@ pub fn terminal(findings: &Findings, style: Style) -> String {
             text += &format!("{}\n", wrapped(line));
         }
     }
+    let sketches = sketches(findings);
+    if !sketches.is_empty() {
+        text += &format!("\n{sketches}");
+    }
+    text += &format!("\n{}\n", style.paint(&super::sketch::verdict(findings), colour));
     text
 }
 

@@ -171,9 +171,10 @@ fn lines(finding: &TightenFinding) -> Vec<String> {
             causes.join("; ")
         ));
     }
+    lines.extend(finding.proof.as_ref().map(|proof| proof.statement.clone()));
     lines.push(format!(
-        "Searched on {} samples with common random numbers ({} plans, {} descents in all); the plan is good, \
-         not proven cheapest. A spread can be bought unless its card says cost = \"none\".",
+        "Searched on {} samples with common random numbers ({} plans, {} descents in all). A spread can be bought \
+         unless its card says cost = \"none\".",
         count(finding.samples),
         count(finding.evaluations),
         count(finding.descents)

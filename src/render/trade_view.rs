@@ -26,6 +26,8 @@ pub(super) struct Trade {
     pub shifts: Vec<String>,
     pub shift_rows: Vec<TradeRow>,
     pub derivatives: Vec<DerivativeRow>,
+    /// Samples behind the score function.
+    pub score_samples: String,
     pub check: Option<String>,
 }
 
@@ -99,7 +101,7 @@ pub(super) fn quantity_of(path: &str) -> Quantity {
     parameter.map_or(Quantity::Number, |parameter| parameter.info().quantity)
 }
 
-fn name_of(path: &str, inputs: usize) -> String {
+pub(super) fn name_of(path: &str, inputs: usize) -> String {
     if inputs == 1 { format!("`{path}`") } else { format!("`{path}`, {inputs} as one") }
 }
 
@@ -191,6 +193,7 @@ pub(super) fn trade(finding: &TradeFinding) -> Trade {
         shifts,
         shift_rows,
         derivatives: derivatives(finding),
+        score_samples: count(finding.score_samples),
         check: check(finding),
     }
 }

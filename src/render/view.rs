@@ -5,6 +5,7 @@ use super::figures_of_speech::{
     bare, count, maybe, probability, probability_interval, upper_end, value, value_interval,
 };
 use super::known_view::{Known, known};
+use super::measures_view::{Measures, measures};
 use super::trade_view::{Shares, Trade, shares, trade};
 use crate::descent::OutcomeQuantity;
 use crate::findings::{
@@ -30,6 +31,7 @@ pub(super) struct View {
     pub margins: Vec<Margin>,
     pub drivers: Drivers,
     pub shares: Shares,
+    pub measures: Measures,
     pub trade: Trade,
     pub known: Known,
     pub nominal: String,
@@ -157,6 +159,7 @@ pub(super) fn view(findings: &Findings) -> View {
         margins: findings.margins.iter().map(margin).collect(),
         drivers: drivers(findings),
         shares: shares(&findings.shapley),
+        measures: measures(&findings.measures),
         trade: trade(&findings.trade),
         known: known(&findings.known),
         nominal: nominal(findings),

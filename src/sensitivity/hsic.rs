@@ -19,7 +19,7 @@ use std::f64::consts::PI;
 /// Terms of the kernel.
 pub const WAVES: usize = 6;
 /// Bootstrap replicates of the coefficient.
-const REPLICATES: usize = 200;
+const REPLICATES: usize = 100;
 /// Products of one row's features: the means of both, all products, and the squares of each.
 const COLUMNS: usize = 1 + 2 * WAVES + 3 * WAVES * WAVES;
 
@@ -65,6 +65,15 @@ pub fn hsic(
     }
     let resampling = Resampling::new(seed, data.rows(), REPLICATES)?;
     let outcome = Features::of(data.outcome());
+    // The orders are the same for every input: their tests then share what chance there is. Inputs without
+    // ties have the same ranks in other places, so the same values stand for all of them.
+    let orders: Vec<Vec<usize>> =
+        (0..permutations).map(|p| permutation(seed, p as u64, data.rows())).collect();
+    let by_chance = |input: &Features| -> Vec<f64> {
+        orders.iter().map(|order| input.criterion(&outcome, Some(order))).collect()
+    };
+    let in_order: Vec<f64> = (0..data.rows()).map(|row| row as f64).collect();
+    let untied = by_chance(&Features::of(&in_order));
     let of_input = |j: usize| {
         if let Some(why) = data.why_none(j) {
             return none(why);
@@ -72,14 +81,10 @@ pub fn hsic(
         let input = Features::of(&data.inputs()[j]);
         let coefficient = coefficient(&input, &outcome, &resampling, confidence);
         let observed = input.criterion(&outcome, None);
-        let (mut exceeding, mut sum) = (0usize, 0.0);
-        for p in 0..permutations {
-            // The same orders for every input: their tests then share what chance there is.
-            let order = permutation(seed, p as u64, data.rows());
-            let value = input.criterion(&outcome, Some(&order));
-            exceeding += usize::from(value >= observed);
-            sum += value;
-        }
+        let own = tied(&data.inputs()[j]).then(|| by_chance(&input));
+        let by_chance = own.as_ref().unwrap_or(&untied);
+        let exceeding = by_chance.iter().filter(|value| **value >= observed).count();
+        let sum: f64 = by_chance.iter().sum();
         let noise = coefficient.value.map(|value| value * sum / permutations as f64 / observed);
         let noise_level = noise.filter(|level| level.is_finite());
         Dependence {
@@ -90,6 +95,13 @@ pub fn hsic(
         }
     };
     Ok((0..data.inputs().len()).map(of_input).collect())
+}
+
+/// Whether two values are the same.
+fn tied(values: &[f64]) -> bool {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    sorted.windows(2).any(|pair| pair[0] == pair[1])
 }
 
 /// cos(mπu)/m for m = 1 ..= [`WAVES`] of each row's rank u, less their means.

@@ -63,6 +63,7 @@ pub struct CrossChecks {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PairIndices {
     /// The plan's numbers of the two factors.
+    #[serde(skip)]
     pub factors: (usize, usize),
     /// Share of the variance that the two explain together.
     pub closed: Estimate,

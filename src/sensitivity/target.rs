@@ -54,22 +54,41 @@ pub fn breach_sensitivities(
             .filter(|(_, breached)| **breached == 1.0)
             .map(|(u, _)| *u)
             .collect();
-        let (distance, p_value) = distance(among.clone(), confidence);
-        BreachSensitivity { target, shift: shift(&among, confidence), distance, p_value }
+        let scores: Vec<f64> = among.iter().map(|&u| normal::quantile(u)).collect();
+        let AmongBreaches { shift, distance, p_value } = among_breaches(&scores, confidence);
+        BreachSensitivity { target, shift, distance, p_value }
     });
     Ok(found.collect())
 }
 
-fn shift(among: &[f64], confidence: f64) -> Estimate {
-    if among.is_empty() {
+/// How an input's law among the breaching samples differs from its own.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AmongBreaches {
+    /// Mean of the input's normal score Φ⁻¹(F(x)) among the breaches; 0 if they do not depend on it.
+    pub shift: Estimate,
+    /// Largest distance between its distribution function among the breaches and its own.
+    pub distance: Estimate,
+    /// Probability of so large a distance if the breaches did not depend on the input (Kolmogorov).
+    pub p_value: Option<f64>,
+}
+
+/// The conditional sensitivity of a breach to an input, given the input's normal scores in the breaching
+/// samples and a confidence strictly between 0 and 1.
+pub fn among_breaches(scores: &[f64], confidence: f64) -> AmongBreaches {
+    let uniforms = scores.iter().map(|&z| normal::cdf(z)).collect();
+    let (distance, p_value) = distance(uniforms, confidence);
+    AmongBreaches { shift: shift(scores, confidence), distance, p_value }
+}
+
+fn shift(scores: &[f64], confidence: f64) -> Estimate {
+    if scores.is_empty() {
         return Estimate::none("no sample breached");
     }
-    let count = among.len() as f64;
-    let scores: Vec<f64> = among.iter().map(|&u| normal::quantile(u)).collect();
+    let count = scores.len() as f64;
     let mean = scores.iter().sum::<f64>() / count;
     let squares: f64 = scores.iter().map(|z| (z - mean) * (z - mean)).sum();
     let error = (squares / (count - 1.0) / count).sqrt();
-    if among.len() < FEWEST || error == 0.0 {
+    if scores.len() < FEWEST || error == 0.0 {
         let interval = Earned::none(format!("{count} breaches are too few for an interval"));
         return Estimate { value: Some(mean), standard_error: None, interval };
     }

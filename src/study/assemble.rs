@@ -5,7 +5,9 @@ use super::document::{self, Node, Value};
 use super::overrides::{Destination, Override, in_place_of, put};
 use super::place::Text;
 use super::together::{self, SampleFile, Together};
-use super::{DrawnTogether, Input, Stated, Study, correlation, inputs, read, sections, tighten};
+use super::{
+    DrawnTogether, Input, Stated, Study, correlation, inputs, pairs, read, sections, tighten,
+};
 use crate::descent::Model;
 use crate::error::{Error, Result};
 use crate::physics::design::{Design, Target};
@@ -86,7 +88,7 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
     let requirement = find("requirement").map(sections::requirement).transpose()?;
     let sampling = sections::sampling(find("sampling"), !limits.is_empty(), requirement)?;
     let numerics = sections::numerics(find("numerics"))?;
-    let sensitivity = sections::sensitivity(find("sensitivity"))?;
+    let mut sensitivity = sections::sensitivity(find("sensitivity"))?;
     let reliability = sections::reliability(find("reliability"))?;
     let trade = tighten::trade(find("trade"))?;
     let tighten = tighten::tighten(find("tighten"), &design)?;
@@ -112,6 +114,9 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
     }
     let inputs = study_inputs(&card, card_node, &design, files)?;
     check_dimension(&sampling, inputs.len(), find("sampling").unwrap_or(card_node))?;
+    if let Some(node) = find("sensitivity").and_then(|node| read::entry(node, "pairs")) {
+        sensitivity.pairs = pairs::pairs(node, &inputs)?;
+    }
     let (drawn_together, samples) = drawn_together(&inputs, &card.together)?;
     let (joint, correlations) = correlation::joint(&inputs, samples, &card.correlations)?;
     let mut notes = notes(&design, &inputs, &stated);

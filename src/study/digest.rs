@@ -76,11 +76,14 @@ impl Study {
             lines.push(format!("until {until} confidence={:e}", stopping.confidence));
         }
         lines.push(format!("numerics tolerance={:e}", self.numerics.tolerance));
-        let plan = self.sensitivity;
+        let plan = &self.sensitivity;
         lines.push(format!(
             "sensitivity base_samples={} bootstrap={}",
             plan.base_samples, plan.bootstrap
         ));
+        lines.extend(
+            plan.pairs.iter().map(|(one, other)| format!("sensitivity pair {one} {other}")),
+        );
         let methods = self.reliability.methods.as_ref();
         lines.push(format!(
             "reliability {}",

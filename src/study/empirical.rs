@@ -29,7 +29,8 @@ pub(super) fn observed<'n>(
     }
 }
 
-fn listed(parameter: &ParameterInfo, node: &Node) -> Result<Vec<f64>> {
+/// The values of a list.
+pub(super) fn listed(parameter: &ParameterInfo, node: &Node) -> Result<Vec<f64>> {
     let Value::Array(items) = &node.value else {
         let problem = format!("this is {}", node.value.described());
         let expected = format!("expected a list, such as [\"{}\"]", parameter.baseline_text);

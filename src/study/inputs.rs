@@ -61,6 +61,7 @@ fn member(together: &Together, target: Target, values: &[f64]) -> Result<Input> 
     Ok(Input {
         target,
         marginal: Marginal::untruncated(law),
+        readings: None,
         known: together.known,
         source: together.source.clone(),
         group: Some(together.group.clone()),
@@ -110,6 +111,7 @@ fn input(statement: &Statement, columns: ColumnReader<'_>) -> Result<(Input, boo
     let input = Input {
         target: *target,
         marginal: law.marginal,
+        readings: law.readings,
         known,
         source,
         group,

@@ -4,15 +4,15 @@
 
 use super::card::Statement;
 use super::document::{Key, Node, Table, Value};
-use super::empirical::{ColumnReader, observed};
+use super::empirical::{ColumnReader, listed, observed};
 use super::laws::{Kind, LAWS, LawInfo, keys_of, kind_of, law_keys};
 use super::read;
 use super::sections::{possible_range, written};
 use crate::error::{Error, Result};
 use crate::physics::design::Target;
 use crate::physics::parameters::{Parameter, ParameterInfo};
-use crate::uncertainty::{Law, Marginal};
-use crate::units::Quantity;
+use crate::uncertainty::{Law, Marginal, Readings};
+use crate::units::{self, Quantity, number};
 
 /// What a statement's law became.
 pub(super) struct Understood {
@@ -21,6 +21,8 @@ pub(super) struct Understood {
     pub text: String,
     /// In SI with exact numbers.
     pub canonical: String,
+    /// The readings that the law was made from.
+    pub readings: Option<Readings>,
 }
 
 /// One value of a law with where it was written.
@@ -53,10 +55,23 @@ pub(super) fn understand(statement: &Statement, columns: ColumnReader<'_>) -> Re
     let parameter = statement.target.parameter.info();
     let reader = Reader { parameter, info, entries };
     let mut canonical = info.name.to_owned();
+    let mut readings = None;
     let (law, error_place) = if info.name == "empirical" {
         let (values, node) = observed(parameter, &|key| reader.entry(key), columns)?;
         canonical.push_str(&format!(" values={}", super::digest::of_numbers(&values)));
         (Law::empirical(values, None), node)
+    } else if form.contains(&"readings") {
+        let (values, node) = reader.readings()?;
+        let given = reader.given(form)?;
+        canonical.push_str(&format!(" readings={}", super::digest::of_numbers(&values)));
+        for Given { key, value, .. } in &given {
+            canonical.push_str(&format!(" {key}={value:e}"));
+        }
+        let known = given.first().map(|given| given.value);
+        let found = Readings::new(&values, known, info.name == "lognormal");
+        let law = found.as_ref().map(Readings::predictive).map_err(Clone::clone);
+        readings = found.ok();
+        (law, node)
     } else {
         let given = reader.given(form)?;
         for Given { key, value, .. } in &given {
@@ -77,7 +92,8 @@ pub(super) fn understand(statement: &Statement, columns: ColumnReader<'_>) -> Re
         let expected = "expected ends between which the law has some probability";
         end_place.place.error("the truncation leaves nothing of the law", expected)
     })?;
-    Ok(Understood { marginal, text: reader.text(form), canonical })
+    let text = reader.text(form, readings.as_ref());
+    Ok(Understood { marginal, text, canonical, readings })
 }
 
 /// A numerical routine's complaint, shown where its argument was written.
@@ -220,6 +236,15 @@ impl<'n> Reader<'n> {
         Ok(Given { key, value, node })
     }
 
+    /// The readings, and where they were written.
+    fn readings(&self) -> Result<(Vec<f64>, &'n Node)> {
+        match self.entry("readings") {
+            Some(node) => Ok((listed(self.parameter, node)?, node)),
+            // The form has been chosen by its keys.
+            None => Err(Error::argument("the law has no readings")),
+        }
+    }
+
     fn spread(&self, node: &Node) -> Result<f64> {
         let quantity = self.parameter.quantity.of_difference();
         match &node.value {
@@ -244,7 +269,7 @@ impl<'n> Reader<'n> {
     /// The numbers of a form, in its order, and of the optional keys that are there.
     fn given(&self, form: &'static [&'static str]) -> Result<Vec<Given<'n>>> {
         let mut given = Vec::new();
-        for &key in form.iter().chain(self.info.optional) {
+        for &key in form.iter().chain(self.info.optional).filter(|key| **key != "readings") {
             if let Some(node) = self.entry(key) {
                 given.push(self.number(key, node)?);
             }
@@ -369,14 +394,33 @@ impl<'n> Reader<'n> {
     }
 
     /// The law as written: "normal, mean 0.062 in, sd 0.003 in, lower 0.053 in".
-    fn text(&self, form: &[&str]) -> String {
+    fn text(&self, form: &[&str], readings: Option<&Readings>) -> String {
         let mut text = self.info.name.to_owned();
+        if let Some(readings) = readings {
+            let quantity = self.parameter.quantity;
+            let centre = units::engineering(readings.centre(), quantity);
+            let (kind, sd) = match readings.is_logarithmic() {
+                true => ("median", format!("log_sd {}", number(readings.sd(), 3))),
+                false => {
+                    let sd = units::engineering(readings.sd(), quantity.of_difference());
+                    ("mean", format!("sd {sd}"))
+                }
+            };
+            let known = if readings.has_known_sd() { "known " } else { "" };
+            text = format!(
+                "what {} {} readings predict, {kind} {centre}, {known}{sd}",
+                readings.count(),
+                self.info.name
+            );
+        }
         let truncation: &[&str] = &["lower", "upper", "truncation_lower", "truncation_upper"];
         for key in form.iter().chain(self.info.optional).chain(truncation) {
             let listed = truncation.contains(key) && form.contains(key) && self.info.bounded;
             let repeated = listed && text.contains(&format!(", {key} "));
             if let (Some(node), false) = (self.entry(key), repeated) {
                 match key {
+                    &"readings" => {}
+                    &"sd" | &"log_sd" if readings.is_some() => {}
                     &"values" => text.push_str(", observed values of the card"),
                     _ => text.push_str(&format!(", {key} {}", written(node))),
                 }

@@ -62,6 +62,11 @@ pub(super) static TERMS: &[Term] = &[
     term("values", Kind::Values, "observed values"),
     term("file", Kind::File, "file of observed values, relative to the card"),
     term("column", Kind::Column, "column of the file"),
+    term(
+        "readings",
+        Kind::Values,
+        "a few measured values, in place of the law's numbers: the law is then what they predict",
+    ),
 ];
 
 const fn law(
@@ -76,11 +81,24 @@ const fn law(
 
 /// Every law.
 pub(super) static LAWS: &[LawInfo] = &[
-    law("normal", "normal (Gaussian)", &[&["mean", "sd"], &["mean", "cv"]], &[], false),
+    law(
+        "normal",
+        "normal (Gaussian)",
+        &[&["mean", "sd"], &["mean", "cv"], &["readings"], &["readings", "sd"]],
+        &[],
+        false,
+    ),
     law(
         "lognormal",
         "the logarithm is normal",
-        &[&["median", "cv"], &["median", "log_sd"], &["mean", "sd"], &["mean", "cv"]],
+        &[
+            &["median", "cv"],
+            &["median", "log_sd"],
+            &["mean", "sd"],
+            &["mean", "cv"],
+            &["readings"],
+            &["readings", "log_sd"],
+        ],
         &[],
         false,
     ),

@@ -15,7 +15,9 @@ mod law;
 mod laws;
 mod load;
 pub mod measured_run;
+mod over;
 mod overrides;
+mod pairs;
 mod place;
 mod read;
 mod resolved;
@@ -29,12 +31,13 @@ mod vocabulary;
 use crate::descent::{Model, Outcome, OutcomeQuantity};
 use crate::physics::design::{Design, Target};
 use crate::sampling;
-use crate::uncertainty::{Joint, Marginal, Measure};
+use crate::uncertainty::{Joint, Marginal, Measure, Readings};
 
 pub use assemble::{Files, NamedText, assemble};
 pub use digest::sha256;
 pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, Parquet, read_column, read_sample};
 pub use measured_run::MeasuredRun;
+pub use over::{MOST_CELLS, Over, design_path, option_error};
 pub use overrides::Override;
 pub use resolved::{ResolvedParameter, UncertainLaw};
 pub use tighten::{DesignRange, Grade, TightenPlan, TighteningCost, TradePlan};
@@ -96,6 +99,8 @@ pub struct Input {
     pub target: Target,
     /// Its distribution, SI.
     pub marginal: Marginal,
+    /// The readings that the distribution predicts from, if it is made of some.
+    pub readings: Option<Readings>,
     /// When its value becomes known.
     pub known: Known,
     /// Where the distribution comes from.
@@ -265,12 +270,14 @@ pub struct Numerics {
 }
 
 /// How the sensitivity indices are estimated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SensitivityPlan {
     /// Rows of each block of the pick-freeze design; 0 leaves the indices out.
     pub base_samples: u64,
     /// Number of bootstrap resamples behind each interval.
     pub bootstrap: u32,
+    /// Pairs of inputs, by path or group, whose second-order index is asked for.
+    pub pairs: Vec<(String, String)>,
 }
 
 /// How small probabilities are estimated.

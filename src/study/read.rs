@@ -111,6 +111,16 @@ pub(super) fn table<'n>(node: &'n Node, example: &str) -> Result<&'n Table> {
     }
 }
 
+/// The value of a key of a table, if it is one and has it.
+pub(super) fn entry<'n>(node: &'n Node, name: &str) -> Option<&'n Node> {
+    match &node.value {
+        Value::Table(entries) => {
+            entries.iter().find(|(key, _)| key.name == name).map(|(_, node)| node)
+        }
+        _ => None,
+    }
+}
+
 /// One name out of several.
 pub(super) fn choice<T>(
     node: &Node,

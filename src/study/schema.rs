@@ -33,8 +33,17 @@ pub fn study() -> Value {
     insert(&mut sampling, "not", json!({ "required": ["samples", "until"] }));
     let numerics =
         table(NUMERICS, |_| json!({ "type": "number", "minimum": 1e-12, "maximum": 1e-2 }), &[]);
-    let sensitivity =
-        table(SENSITIVITY, |info| whole(if info.name == "bootstrap" { 20 } else { 0 }), &[]);
+    let names = json!({ "type": "string", "pattern": "\\S" });
+    let pair = json!({ "type": "array", "items": names, "minItems": 2, "maxItems": 2 });
+    let sensitivity = table(
+        SENSITIVITY,
+        |info| match info.name {
+            "bootstrap" => whole(100),
+            "pairs" => json!({ "type": "array", "items": pair, "uniqueItems": true }),
+            _ => whole(0),
+        },
+        &[],
+    );
     let methods = json!({ "type": "array", "items": { "enum": METHODS }, "uniqueItems": true });
     let reliability = table(RELIABILITY, |_| methods.clone(), &[]);
     let trade = table(TRADE, |_| json!({ "anyOf": [{ "const": 0 }, whole(100)] }), &[]);

@@ -24,7 +24,7 @@ const DEFAULT_SEED: u64 = 1993;
 /// Relative error asked of the outcomes.
 const DEFAULT_TOLERANCE: f64 = 1e-6;
 const DEFAULT_SENSITIVITY: SensitivityPlan =
-    SensitivityPlan { base_samples: 4096, bootstrap: 1000 };
+    SensitivityPlan { base_samples: 4096, bootstrap: 1000, pairs: Vec::new() };
 
 /// One value of `[design]`.
 #[derive(Debug, Clone)]
@@ -354,7 +354,7 @@ pub(super) fn numerics(node: Option<&Node>) -> Result<Numerics> {
     Ok(numerics)
 }
 
-/// `[sensitivity]`.
+/// `[sensitivity]`, without its pairs, which need the inputs.
 pub(super) fn sensitivity(node: Option<&Node>) -> Result<SensitivityPlan> {
     let mut plan = DEFAULT_SENSITIVITY;
     let Some(node) = node else { return Ok(plan) };
@@ -368,7 +368,7 @@ pub(super) fn sensitivity(node: Option<&Node>) -> Result<SensitivityPlan> {
         }
     }
     if let Some(node) = section.get("bootstrap") {
-        plan.bootstrap = read::integer(node, 20, 1_000_000, "1000")? as u32;
+        plan.bootstrap = read::integer(node, 100, 1_000_000, "1000")? as u32;
     }
     Ok(plan)
 }

@@ -65,6 +65,7 @@ pub(super) static NUMERICS: &[KeyInfo] =
 pub(super) static SENSITIVITY: &[KeyInfo] = &[
     key("base_samples", "rows of each block of the pick-freeze design; 0 leaves the indices out"),
     key("bootstrap", "bootstrap resamples behind each interval"),
+    key("pairs", "pairs of inputs or groups whose second-order index is asked for"),
 ];
 
 /// Keys of `[reliability]`.

@@ -6,7 +6,8 @@ pub(super) use construction::EULER_GAMMA;
 
 use super::empirical::Empirical;
 use crate::numerics::elementary::{exp, exp_m1, ln, ln_1p, pow};
-use crate::numerics::special::{beta, gamma, normal};
+use crate::numerics::special::gamma::ln_gamma;
+use crate::numerics::special::{beta, gamma, normal, student};
 
 /// A distribution family with its parameters, in SI units.
 ///
@@ -88,6 +89,17 @@ pub enum Law {
         /// Least value.
         location: f64,
     },
+    /// Student's t, of a quantity or of its logarithm: what readings predict, see [`super::Readings`].
+    Student {
+        /// Centre, of the logarithm if `logarithmic`.
+        location: f64,
+        /// Scale, > 0.
+        scale: f64,
+        /// Degrees of freedom, > 0.
+        degrees: f64,
+        /// Whether it is the logarithm that follows the law.
+        logarithmic: bool,
+    },
     /// The law of a set of observations.
     Empirical(Empirical),
 }
@@ -105,6 +117,8 @@ impl Law {
             Law::Gumbel { .. } => "gumbel",
             Law::Gamma { .. } => "gamma",
             Law::Exponential { .. } => "exponential",
+            Law::Student { logarithmic: false, .. } => "Student's t",
+            Law::Student { logarithmic: true, .. } => "Student's t of the logarithm",
             Law::Empirical(_) => "empirical",
         }
     }
@@ -112,8 +126,10 @@ impl Law {
     /// The smallest interval that holds the whole law, ends possibly infinite.
     pub fn support(&self) -> (f64, f64) {
         match *self {
-            Law::Normal { .. } | Law::Gumbel { .. } => (f64::NEG_INFINITY, f64::INFINITY),
-            Law::Lognormal { .. } => (0.0, f64::INFINITY),
+            Law::Normal { .. } | Law::Gumbel { .. } | Law::Student { logarithmic: false, .. } => {
+                (f64::NEG_INFINITY, f64::INFINITY)
+            }
+            Law::Lognormal { .. } | Law::Student { logarithmic: true, .. } => (0.0, f64::INFINITY),
             Law::Uniform { lower, upper }
             | Law::Triangular { lower, upper, .. }
             | Law::Beta { lower, upper, .. } => (lower, upper),
@@ -180,6 +196,11 @@ impl Law {
                 location + scale * x
             }
             Law::Exponential { mean, location } => location + mean * cumulative_hazard(),
+            Law::Student { location, scale, degrees, logarithmic } => {
+                let t = student::quantile_upper(degrees, tail);
+                let x = location + scale * if lower { -t } else { t };
+                if logarithmic { super::transform::exponential_of(x) } else { x }
+            }
             Law::Empirical(ref empirical) => empirical.quantile_of_tail(tail, lower),
         }
     }
@@ -244,6 +265,10 @@ impl Law {
             }
             Law::Gamma { shape, scale, location } => gamma::tails(shape, (x - location) / scale),
             Law::Exponential { mean, location } => of_hazard((x - location) / mean),
+            Law::Student { location, scale, degrees, logarithmic } => {
+                let t = ((if logarithmic { ln(x) } else { x }) - location) / scale;
+                (student::cdf(degrees, t), student::survival(degrees, t))
+            }
             Law::Empirical(ref empirical) => empirical.tails(x),
         }
     }
@@ -298,6 +323,16 @@ impl Law {
                 gamma::ln_density(shape, (x - location) / scale) - ln(scale)
             }
             Law::Exponential { mean, location } => -(x - location) / mean - ln(mean),
+            Law::Student { logarithmic: true, .. } if x == 0.0 => f64::NEG_INFINITY,
+            Law::Student { location, scale, degrees, logarithmic } => {
+                let t = ((if logarithmic { ln(x) } else { x }) - location) / scale;
+                let constant = ln_gamma(0.5 * (degrees + 1.0))
+                    - ln_gamma(0.5 * degrees)
+                    - 0.5 * ln(degrees * std::f64::consts::PI)
+                    - ln(scale);
+                let ln_x = if logarithmic { ln(x) } else { 0.0 };
+                constant - 0.5 * (degrees + 1.0) * ln_1p(t * t / degrees) - ln_x
+            }
             Law::Empirical(ref empirical) => empirical.ln_density(x),
         }
     }

@@ -222,6 +222,9 @@ impl Marginal {
     /// Mean and standard deviation; for a truncated law one integration gives both.
     pub fn moments(&self) -> (f64, f64) {
         let Some(cut) = &self.cut else { return (self.law.mean(), self.law.sd()) };
+        if !self.law.has_moments(cut.lower, cut.upper) {
+            return (self.law.mean(), self.law.sd());
+        }
         match &self.law {
             Law::Empirical(empirical) => empirical.moments(cut.lower, cut.upper),
             Law::Uniform { .. } => {

@@ -13,6 +13,7 @@ pub mod marginal;
 mod moments;
 pub mod nataf;
 mod perturbation;
+pub mod readings;
 mod transform;
 mod truncation;
 
@@ -22,3 +23,4 @@ pub use joint::Joint;
 pub use joint_sample::JointSample;
 pub use law::Law;
 pub use marginal::Marginal;
+pub use readings::Readings;

@@ -8,6 +8,24 @@ use crate::numerics::special::gamma::ln_gamma;
 use std::f64::consts::PI;
 
 impl Law {
+    /// The point that a shift of the law is counted from: its mean, of Student's law its centre.
+    pub fn anchor(&self) -> f64 {
+        match *self {
+            Law::Student { location, logarithmic: true, .. } => exp(location),
+            Law::Student { location, .. } => location,
+            _ => self.mean(),
+        }
+    }
+
+    /// Whether mean and standard deviation are finite between `from` and `to`.
+    pub(super) fn has_moments(&self, from: f64, to: f64) -> bool {
+        match *self {
+            Law::Student { logarithmic: true, .. } => to.is_finite(),
+            Law::Student { degrees, .. } => degrees > 2.0 || from.is_finite() && to.is_finite(),
+            _ => true,
+        }
+    }
+
     /// Mean.
     pub fn mean(&self) -> f64 {
         match *self {
@@ -30,6 +48,10 @@ impl Law {
             }
             Law::Gamma { shape, scale, location } => location + shape * scale,
             Law::Exponential { mean, location } => location + mean,
+            // Of the logarithm's t no moment is finite, and of Cauchy's law (one degree) none exists.
+            Law::Student { logarithmic: true, .. } => f64::INFINITY,
+            Law::Student { location, degrees, .. } if degrees > 1.0 => location,
+            Law::Student { .. } => f64::NAN,
             Law::Empirical(ref empirical) => empirical.moments(f64::NEG_INFINITY, f64::INFINITY).0,
         }
     }
@@ -57,6 +79,10 @@ impl Law {
             Law::Gumbel { scale, .. } => scale * PI / 6.0_f64.sqrt(),
             Law::Gamma { shape, scale, .. } => scale * shape.sqrt(),
             Law::Exponential { mean, .. } => mean,
+            Law::Student { scale, degrees, logarithmic: false, .. } if degrees > 2.0 => {
+                scale * (degrees / (degrees - 2.0)).sqrt()
+            }
+            Law::Student { .. } => f64::INFINITY,
             Law::Empirical(ref empirical) => empirical.moments(f64::NEG_INFINITY, f64::INFINITY).1,
         }
     }

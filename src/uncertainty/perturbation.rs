@@ -18,6 +18,11 @@ impl Law {
                 exp(log_mean * (1.0 - factor)) * pow(x, factor)
             }
             Law::Lognormal { .. } => x,
+            Law::Student { location, logarithmic: true, .. } if x > 0.0 => {
+                exp(location * (1.0 - factor)) * pow(x, factor)
+            }
+            Law::Student { logarithmic: true, .. } => x,
+            Law::Student { location, .. } => location + factor * (x - location),
             Law::Uniform { lower, upper } => {
                 let centre = 0.5 * lower + 0.5 * upper;
                 centre + factor * (x - centre)
@@ -66,6 +71,9 @@ impl Law {
                 Law::gamma(shape, scale * factor, map(location))
             }
             Law::Exponential { mean, location } => Law::exponential(mean * factor, map(location)),
+            Law::Student { location, scale, degrees, logarithmic } => {
+                Ok(Law::Student { location, scale: scale * factor, degrees, logarithmic })
+            }
             Law::Empirical(ref empirical) => Ok(Law::Empirical(empirical.mapped(map)?)),
         }
     }
@@ -74,6 +82,7 @@ impl Law {
     fn shifted(&self, delta: f64, x: f64) -> f64 {
         match self {
             Law::Lognormal { .. } => x * (1.0 + delta / self.mean()),
+            Law::Student { logarithmic: true, .. } => x * (1.0 + delta / self.anchor()),
             _ => x + delta,
         }
     }
@@ -112,6 +121,14 @@ impl Law {
             }
             Law::Gamma { shape, scale, location } => Law::gamma(shape, scale, map(location)),
             Law::Exponential { mean, location } => Law::exponential(mean, map(location)),
+            Law::Student { location, scale, degrees, logarithmic } => {
+                let growth = delta / self.anchor();
+                if !delta.is_finite() || logarithmic && growth <= -1.0 {
+                    return Err(Error::argument(format!("a law cannot move by {delta}")));
+                }
+                let location = if logarithmic { location + ln_1p(growth) } else { map(location) };
+                Ok(Law::Student { location, scale, degrees, logarithmic })
+            }
             Law::Empirical(ref empirical) => Ok(Law::Empirical(empirical.mapped(map)?)),
         }
     }
@@ -120,6 +137,7 @@ impl Law {
     pub fn spread(&self) -> f64 {
         match *self {
             Law::Lognormal { log_sd, .. } => log_sd,
+            Law::Student { scale, .. } => scale,
             _ => self.sd(),
         }
     }

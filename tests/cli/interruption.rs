@@ -3,6 +3,7 @@
 #![cfg(unix)]
 
 use super::determinism::{assert_same, rows, run};
+use super::program::reeldown;
 use super::program::{Answer, Place, program};
 use std::process::{Command, Stdio};
 use std::thread;
@@ -76,4 +77,34 @@ fn property_the_resume_command_can_be_typed_as_printed() {
     let shell = Command::new("sh").args(["-c", &line]).output().expect("sh runs");
     Answer::of(shell).ended_with(3);
     assert_eq!(rows(&place, "it's here"), samples);
+}
+
+#[test]
+fn property_a_run_goes_on_when_only_what_is_asked_of_its_samples_changes() {
+    let place = Place::new("asked");
+    let out = place.at("run");
+    let few = ["run", "--quiet", "--samples", "300", "--out", &out, "--set", "model=quasi-steady"];
+    let first = ["--set", "sensitivity.base_samples=0", "--set", "trade.samples=0"];
+    reeldown(&[&few[..], &first].concat()).ended_with(3);
+    let other = [
+        "sensitivity.base_samples=32",
+        "sensitivity.pairs=[[\"fluid.shear_factor\", \"brake.gap\"]]",
+        "trade.samples=200",
+        "tighten.target=0.05",
+        "tighten.samples=500",
+        "tighten.design={\"fluid.nominal_viscosity\" = [\"90000 cSt\", \"140000 cSt\"]}",
+        "fluid.shear_factor.cost=3",
+        "initial.temperature.cost=[{spread=0.3, cost=40}]",
+        "fluid.shear_factor.known=on the day",
+        "requirement.reliability=0.9",
+    ];
+    let other: Vec<&str> = other.iter().flat_map(|text| ["--set", text]).collect();
+    reeldown(&[&few[..], &["--resume"], &other].concat()).ended_with(3);
+    let text = place.bytes("run/provenance.json");
+    let provenance: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
+    assert_eq!(provenance["samples_read_again"], 300, "{provenance}");
+    // What moves a sample does stop it.
+    let moved = [&few[..], &["--resume", "--set", "fluid.nominal_viscosity=120000 cSt"]].concat();
+    let answer = reeldown(&moved).ended_with(1);
+    assert!(answer.err.contains("another study"), "{}", answer.err);
 }

@@ -3,6 +3,7 @@
 mod acceptance;
 mod artefacts;
 mod calibrate;
+mod comparing;
 mod determinism;
 mod disk;
 mod errors;
@@ -12,5 +13,8 @@ mod program;
 mod published;
 mod readers;
 mod replaying;
+mod rig;
+mod sweeping;
+mod tighten;
 mod together;
 mod verdicts;

@@ -66,7 +66,9 @@ def main(run, trace):
         assert abs(mean / outcome["mean"] - 1) < samples * 2.3e-16, outcome["name"]
 
     _, indices = read(run / "sensitivity.parquet")
-    assert set(indices["order"]) == {"first", "total"}
+    assert {"first", "total", "shapley", "borgonovo_delta", "hsic", "prcc"} <= set(indices["index"])
+    assert indices["estimate"].notna().any()
+    assert (indices["lower_95"].notna() | indices["note"].notna()).all()
     assert {"breach.any", "time"} <= set(indices["output"])
     _, course = read(trace)
     assert course["time_s"].is_monotonic_increasing

@@ -75,6 +75,27 @@ fn property_an_error_leaves_standard_output_empty() {
 }
 
 #[test]
+fn property_a_run_ends_with_sketches_and_the_verdict_in_80_columns() {
+    let place = Place::new("sketch");
+    let answer = run(&place, &[STRICT, &["--samples", "2000"]]).ended_with(3);
+    // Three sketches, the verdict and the report's place, parted by empty lines.
+    let lines: Vec<&str> = answer.out.lines().collect();
+    let end = &lines[lines.len() - 7..];
+    assert!(end[6].starts_with("report: "), "{}", answer.out);
+    assert!(end[4].starts_with("NOT MET: P(any breach) ") && end[4].ends_with("allowed 1 %"));
+    for (line, title) in end.iter().zip(["reel-down time", "final sep", "peak fluid"]) {
+        assert!(line.starts_with(title) && line.contains('█'), "{line}");
+        assert_eq!(line.matches('┃').count(), 1, "one limit: {line}");
+    }
+    assert!(end[0].contains("% beyond"), "{}", end[0]);
+    assert!(end[..5].iter().all(|line| line.chars().count() <= 80), "{end:#?}");
+    // Without breaches the limit stands apart.
+    let answer = run(&place, &[LENIENT, &["--samples", "300"]]).ended_with(0);
+    assert_eq!(answer.out.matches(" ┃").count(), 3, "{}", answer.out);
+    assert_eq!(answer.out.matches("no breach\n").count(), 3, "{}", answer.out);
+}
+
+#[test]
 fn property_quiet_prints_nothing() {
     let place = Place::new("quiet");
     let answer = run(&place, &[STRICT, &["--samples", "200", "--quiet"]]).ended_with(3);

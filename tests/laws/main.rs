@@ -5,5 +5,6 @@ mod families;
 mod joint_sample;
 mod properties;
 mod published;
+mod readings;
 mod reference;
 mod special;

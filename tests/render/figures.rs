@@ -29,6 +29,18 @@ fn well_formed(figure: &Figure) -> String {
     text
 }
 
+/// Panics unless a figure is well formed, scales, has a name, and shows numbers only.
+pub fn assert_complete(figure: &Figure) {
+    let text = well_formed(figure);
+    assert!(text.contains(&figure.title), "{}", figure.name);
+    assert!(figure.svg.contains("viewBox=\"0 0 520 ") && figure.svg.contains("role=\"img\""));
+    for number in ["NaN", "inf"] {
+        let numbers = figure.svg.replace("informa", "");
+        assert!(!numbers.contains(number), "{} in {}", number, figure.name);
+    }
+    assert!(!figure.caption.is_empty() && !figure.alternative.is_empty());
+}
+
 fn paper() -> Vec<Figure> {
     paper_figures(&paper_runs(&Design::baseline(), Model::QuasiSteady).unwrap())
 }
@@ -39,14 +51,7 @@ fn property_figures_are_well_formed_scale_and_have_a_name() {
     let other = figures(&replicated().findings);
     assert_eq!(run.all().count(), 15);
     for figure in run.all().chain(other.all()).chain(&paper()) {
-        let text = well_formed(figure);
-        assert!(text.contains(&figure.title), "{}", figure.name);
-        assert!(figure.svg.contains("viewBox=\"0 0 520 ") && figure.svg.contains("role=\"img\""));
-        for number in ["NaN", "inf"] {
-            let numbers = figure.svg.replace("informa", "");
-            assert!(!numbers.contains(number), "{} in {}", number, figure.name);
-        }
-        assert!(!figure.caption.is_empty() && !figure.alternative.is_empty());
+        assert_complete(figure);
     }
     let names: BTreeSet<&str> = run.all().map(|figure| figure.name.as_str()).collect();
     assert_eq!(names.len(), run.all().count());

@@ -2,5 +2,7 @@
 
 mod figures;
 mod html;
+mod measures;
 mod numbers;
 mod sample;
+mod sweep;

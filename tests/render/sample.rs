@@ -40,6 +40,13 @@ fn run(settings: &[&str]) -> Sample {
         nominal: campaign::nominal(&study),
         verification: campaign::verify(&study, &record).unwrap(),
         pick_freeze,
+        given: campaign::given_sample::run_given(&study, &record, &progress)
+            .map_err(|reason| reason.to_string())
+            .and_then(|found| found.ok_or_else(unasked)),
+        screening: campaign::screening::run_screening(&study, &progress)
+            .map_err(|reason| reason.to_string())
+            .and_then(|found| found.ok_or_else(unasked)),
+        slopes: campaign::screening::slopes(&study),
         shapley: Err(unasked()),
         trade: Err(unasked()),
         known: Err(unasked()),

@@ -78,6 +78,14 @@ fn analytic_g_function_with_a_group() {
 }
 
 #[test]
+fn published_second_order_of_the_g_function() {
+    let plan = Plan::new(16_384, 8, singles(8)).unwrap().with_pairs(&[(0, 1)]).unwrap();
+    let pair = &analyse(&plan, g_function, 4).pairs[0];
+    assert_near(&pair.interaction, 0.0596826807399194, "second order");
+    assert_near(&pair.closed, 0.0596826807399194 + 0.716192168879033 + 0.179048042219758, "closed");
+}
+
+#[test]
 fn analytic_breach_indicator_has_tiny_first_order_and_large_total_indices() {
     // 1[3 − Σ√aᵢ uᵢ < 0]: a rare event, P = 0.00135; first order and total from the bivariate normal.
     let plan = Plan::new(1 << 17, 3, singles(3)).unwrap();

@@ -235,6 +235,35 @@ fn property_studies_are_read_from_files() {
 }
 
 #[test]
+fn property_readings_predict_the_law() {
+    let study = card_alone(include_str!("accepted/card_readings.toml")).expect("a card");
+    let of = |parameter| {
+        let target = Target::whole(parameter);
+        study.inputs.iter().find(|input| input.target == target).expect("uncertain")
+    };
+    let gap = study.inputs.iter().find(|input| input.target == Target::gap(0)).expect("a gap");
+    assert_eq!(gap.marginal.law().family(), "Student's t");
+    assert_eq!(gap.marginal.support(), (0.053 * 0.0254, 0.071 * 0.0254));
+    assert!(
+        gap.law_text.starts_with("what 5 normal readings predict, mean 0.062 in ("),
+        "{}",
+        gap.law_text
+    );
+    assert_eq!(gap.readings.as_ref().map(|readings| readings.count()), Some(5));
+    assert_eq!(
+        of(Parameter::FluidShearFactor).marginal.law().family(),
+        "Student's t of the logarithm"
+    );
+    // σ √(1 + 1/n) of a known σ.
+    let capacity = of(Parameter::ThermalFluidCapacity).marginal.law().spread();
+    assert!((capacity - 0.03 * 1.5_f64.sqrt()).abs() < 1e-15);
+    let temperature = of(Parameter::InitialTemperature).marginal.clone();
+    assert!((temperature.sd() - 8.0 / 1.8 * 2.0_f64.sqrt()).abs() < 1e-12);
+    let other = include_str!("accepted/card_readings.toml").replace("0.98", "0.97");
+    assert_ne!(study.digest(), card_alone(&other).expect("a card").digest());
+}
+
+#[test]
 fn property_observed_values_are_read_beside_their_card() {
     let directory = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("observed");
     std::fs::create_dir_all(directory.join("cards")).expect("a directory");

@@ -121,3 +121,46 @@ fn property_a_replicated_design_has_a_trade_too() {
     assert_eq!(trade.replicates, 16);
     assert_eq!(trade.base.rows(), 1024);
 }
+
+#[test]
+fn property_the_size_of_a_trade_does_not_follow_where_an_adaptive_run_stopped() {
+    let until = "sampling.until={relative_error=0.2, budget=20000}";
+    let adaptive = study(&[until, "trade.samples=8000"]);
+    let progress = Progress::default();
+    let mut looks = campaign::Looks::new(&adaptive).expect("looks");
+    let mut record = Record::new(&adaptive, 1).expect("a record");
+    let mut sink = |table: reeldown::outcomes::OutcomeTable| {
+        record.absorb(&table);
+        Ok(())
+    };
+    campaign::run_until(&adaptive, &mut looks, &progress, &mut sink).expect("a run");
+    let stopped = record.counts().samples();
+    assert!(stopped < 8000, "stopped at {stopped}: it does not stop below the trade's sample");
+    let trade = run_trade(&adaptive, &record, &progress).expect("a trade").expect("a trade");
+    assert_eq!(
+        (trade.base.rows(), trade.headline_base.rows(), trade.score_samples),
+        (8000, 8000, 8000)
+    );
+    // The same points as those of a run of fixed size.
+    let fixed = study(&["sampling.samples=8000", "trade.samples=8000"]);
+    let whole = CommonSample::of_run(&fixed, 8000).expect("a sample");
+    assert_eq!(trade.base, whole.base(&progress).expect("breaches"));
+}
+
+#[test]
+fn property_a_design_value_agrees_with_independent_reruns() {
+    let study = study(&[]);
+    let progress = Progress::default();
+    let trade = run_trade(&study, &recorded(&study), &progress).expect("a trade").expect("one");
+    let [sweep] = &trade.sweeps[..] else { panic!("the viscosity may move") };
+    let independent = CommonSample::independent(&study, 0..4000, Purpose::Test).expect("a sample");
+    for setting in sweep.coarse.iter().step_by(3).chain(sweep.fine.iter().step_by(4)) {
+        let change = Change::default().and_design(sweep.range.target, setting.value);
+        let again = share(&independent.changed(&change, &progress).expect("a rerun"));
+        let here = share(&setting.breaches);
+        let p = (0.5 * (again + here)).clamp(1e-3, 1.0 - 1e-3);
+        // As for the curves: 4.5 standard errors of two independent shares of 4000.
+        let allowed = 4.5 * (2.0 * p * (1.0 - p) / 4000.0).sqrt();
+        assert!((again - here).abs() <= allowed, "{}: {here} {again}", setting.value);
+    }
+}

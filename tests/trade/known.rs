@@ -3,14 +3,15 @@
 use super::curves::study;
 use reeldown::campaign::Progress;
 use reeldown::campaign::common_numbers::{Change, CommonSample, Event};
-use reeldown::campaign::known::{INNER, run_known};
+use reeldown::campaign::known::{INNER, Second, run_known};
+use reeldown::physics::{Parameter, Target};
 use reeldown::streams::Purpose;
 use reeldown::study::{Known, Study};
 
 #[test]
 fn property_known_temperatures_average_to_the_probability() {
     let study = study(&["trade.samples=2000"]);
-    let found = run_known(&study, 2000, &Progress::default()).expect("an answer").expect("one");
+    let found = run_known(&study, &Progress::default()).expect("an answer").expect("one");
     assert_eq!(found.stages.len(), 2);
     assert_eq!((found.stages[0].known, found.stages[0].inputs), (Known::AtBuild, 14));
     assert_eq!((found.stages[1].known, found.stages[1].inputs), (Known::OnTheDay, 15));
@@ -27,6 +28,20 @@ fn property_known_temperatures_average_to_the_probability() {
     );
     let [chart] = &found.charts[..] else { panic!("one input is measured on the day") };
     assert_eq!(chart.settings.len(), 21);
+    // The launch temperature and the viscosity of the lot, for want of a second input measured on the day.
+    let map = found.map.as_ref().expect("a map");
+    let path = Target::whole(Parameter::FluidNominalViscosity);
+    assert_eq!((map.input, map.beside), (chart.input, Second::Lot(path)));
+    assert_eq!((map.first.len(), map.second.len(), map.breaches.len()), (11, 21, 231));
+    // The middle lot is the study's, and the first points of the charts are the map's.
+    assert_eq!(map.second[10], study.design.at(path));
+    for (row, value) in map.first.iter().enumerate() {
+        let cell = &map.breaches[row * 21 + 10];
+        let (setting, breaches) = &chart.settings[2 * row];
+        assert_eq!(setting, value);
+        let same = breaches.counts(Event::Any, 0..map.samples as usize);
+        assert_eq!(cell.count(Event::Any), same);
+    }
     // A colder fluid is thicker: every descent of the same point takes longer.
     let late: Vec<u64> =
         chart.settings.iter().map(|(_, b)| b.count(Event::Limit(0)).breaches).collect();

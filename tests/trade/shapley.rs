@@ -46,6 +46,29 @@ fn analytic_ishigami() {
 }
 
 #[test]
+fn published_g_function_of_eight_inputs() {
+    // Closed forms of Sobol's g with a = (0, 1, 4.5, 9, 99, 99, 99, 99): Sᵢ plus equal shares of every interaction.
+    let a = [0.0, 1.0, 4.5, 9.0, 99.0, 99.0, 99.0, 99.0];
+    let tiny = 8.78727317004569e-05;
+    let exact = [
+        0.751518863064373,
+        0.210477293704114,
+        0.028880459422742,
+        0.00877189288196917,
+        tiny,
+        tiny,
+        tiny,
+        tiny,
+    ];
+    let factors = (0..8).map(|j| vec![j]).collect();
+    let walks = Walks::new(factors, None, 40_000, 7).expect("walks");
+    check(&walks, &exact, |z| {
+        let factor = |(z, a): (&f64, f64)| ((4.0 * normal::cdf(*z) - 2.0).abs() + a) / (1.0 + a);
+        z.iter().zip(a).map(factor).product()
+    });
+}
+
+#[test]
 fn analytic_linear_function_of_correlated_normal_variables() {
     // x1 + x2 + x3 with sd 1, 1, 2 and corr(x2, x3) = 0.9: conditional variances of Gaussian vectors.
     let exact = [0.10416666666666667, 0.41822916666666665, 0.4776041666666667];

@@ -237,8 +237,8 @@ impl<'a> RigLikelihood<'a> {
         let n = self.targets.len();
         let mut rows = Columns::new(2 * n, n);
         for k in 0..2 * n {
-            for j in 0..n {
-                rows.set(k, j, z[j]);
+            for (j, &value) in z.iter().take(n).enumerate() {
+                rows.set(k, j, value);
             }
             let side = if k % 2 == 0 { DIFFERENCE } else { -DIFFERENCE };
             rows.set(k, k / 2, z[k / 2] + side);
@@ -274,8 +274,9 @@ impl<'a> RigLikelihood<'a> {
         for first in (0..=n).step_by(DIRECTIONS) {
             let mut design = base.clone();
             let last = (first + DIRECTIONS).min(n + 1);
-            for j in first..last.min(n) {
-                design.set(self.targets[j], Dual::variable(inputs[j], j - first));
+            let varied = self.targets.iter().zip(inputs).skip(first).take(DIRECTIONS);
+            for (direction, (&target, &value)) in varied.enumerate() {
+                design.set(target, Dual::variable(value, direction));
             }
             let mut brake = Coefficients::with_shear_thinning(&design, thinning);
             brake.initial_temperature_k = if n < last {
@@ -325,6 +326,17 @@ impl<'a> RigLikelihood<'a> {
         }
         Some(again)
     }
+}
+
+/// The sum of some columns with these weights.
+pub(super) fn combined(columns: &[Vec<f64>], weights: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut sum = vec![0.0; columns.first().map_or(0, Vec::len)];
+    for (column, weight) in columns.iter().zip(weights) {
+        for (sum, value) in sum.iter_mut().zip(column) {
+            *sum += weight * value;
+        }
+    }
+    sum
 }
 
 /// Predictions and their derivatives; see [`RigLikelihood::slopes`].
@@ -384,15 +396,13 @@ impl LeastSquares for RigLikelihood<'_> {
                 let count = columns[0].len();
                 whitened.residuals.append(&mut columns[0]);
                 for (j, jacobian) in whitened.jacobian.iter_mut().enumerate() {
-                    for k in 0..count {
-                        let slope = if j < n {
-                            (0..n).map(|i| columns[1 + i][k] * by_input[i][j]).sum()
-                        } else if j == n + run {
-                            columns[1 + n][k] * planned.initial.sd_k
-                        } else {
-                            0.0
-                        };
-                        jacobian.push(slope);
+                    if j < n {
+                        jacobian
+                            .extend(combined(&columns[1..=n], by_input.iter().map(|row| row[j])));
+                    } else if j == n + run {
+                        jacobian.extend(columns[1 + n].iter().map(|x| x * planned.initial.sd_k));
+                    } else {
+                        jacobian.resize(jacobian.len() + count, 0.0);
                     }
                 }
             }

@@ -6,7 +6,7 @@
 //! in that.
 
 use super::channel::Channel;
-use super::likelihood::RigLikelihood;
+use super::likelihood::{RigLikelihood, combined};
 use super::plan::is_hardware;
 use crate::calibration::narrowing::Dependence;
 use crate::calibration::noise::{Noise, Reading, Series, whiten};
@@ -213,17 +213,15 @@ impl Planner<'_> {
             let mut columns: Vec<Vec<f64>> = vec![vec![0.0; count]];
             columns.extend(slopes.derivatives[c].iter().cloned());
             whiten(&series, &self.noise_of(*channel), &mut columns);
-            for k in 0..count {
-                let row: Vec<f64> = self
-                    .columns
-                    .iter()
-                    .map(|&j| (0..n).map(|i| columns[1 + i][k] * by_input[i][j]).sum())
-                    .chain([columns[1 + n][k]])
-                    .collect();
-                for (a, &x) in row.iter().enumerate() {
-                    for (b, &y) in row.iter().enumerate() {
-                        matrix[(a, b)] += x * y;
-                    }
+            let mut slopes: Vec<Vec<f64>> = self
+                .columns
+                .iter()
+                .map(|&j| combined(&columns[1..=n], by_input.iter().map(|row| row[j])))
+                .collect();
+            slopes.push(columns[1 + n].clone());
+            for (a, x) in slopes.iter().enumerate() {
+                for (b, y) in slopes.iter().enumerate() {
+                    matrix[(a, b)] += x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
                 }
             }
         }

@@ -110,13 +110,13 @@ impl<R: Real> Constants<R> {
         let gravity = value(GRAVITY);
         let payload_mass = c.payload.weight_n / gravity;
         let total_mass = c.balloon.moving_mass_kg + payload_mass;
+        let inverse_mass = one / total_mass;
         let heat = &c.thermal;
-        let (c1, c2, c3) = (
-            heat.fluid_capacity_j_per_k,
-            heat.rotor_capacity_j_per_k,
-            heat.housing_capacity_j_per_k,
-        );
+        let per_c1 = one / heat.fluid_capacity_j_per_k;
+        let per_c2 = one / heat.rotor_capacity_j_per_k;
+        let per_c3 = one / heat.housing_capacity_j_per_k;
         let torque = c.fluid.torque_per_speed_nms;
+        let inverse_torque = one / torque;
         let thins = c.fluid.shear_thinning;
         Constants {
             length: c.reel.line_length_m,
@@ -126,28 +126,28 @@ impl<R: Real> Constants<R> {
             inertia: c.reel.inertia_kg_m2,
             spool_pull: value(0.5) * c.reel.inertia_kg_m2 * c.reel.squared_radius_slope_m,
             torque,
-            inverse_torque: one / torque,
+            inverse_torque,
             minus_viscosity_temperature: -c.fluid.viscosity_temperature_k,
             averaging_offset: c.fluid.averaging_offset,
-            cross_group: if thins { c.fluid.cross_time_s / torque } else { value(0.0) },
+            cross_group: if thins { c.fluid.cross_time_s * inverse_torque } else { value(0.0) },
             cross_exponent: if thins { c.fluid.cross_exponent } else { value(0.5) },
             cross_on: value(if thins { 1.0 } else { 0.0 }),
             weight: c.payload.weight_n,
             extraction: c.payload.extraction_n_per_m,
             total_mass,
-            inverse_mass: one / total_mass,
-            payload_share: payload_mass / total_mass,
-            share_slope: c.payload.extraction_n_per_m / gravity / total_mass,
+            inverse_mass,
+            payload_share: payload_mass * inverse_mass,
+            share_slope: c.payload.extraction_n_per_m / gravity * inverse_mass,
             free_lift: c.balloon.net_lift_n - c.payload.weight_n,
             drag: c.balloon.drag_factor_kg_per_m,
-            inverse_fluid_capacity: one / c1,
-            fluid_rotor_1: heat.fluid_rotor_w_per_k / c1,
-            fluid_housing_1: heat.fluid_housing_w_per_k / c1,
-            fluid_rotor_2: heat.fluid_rotor_w_per_k / c2,
-            rotor_housing_2: heat.rotor_housing_w_per_k / c2,
-            fluid_housing_3: heat.fluid_housing_w_per_k / c3,
-            rotor_housing_3: heat.rotor_housing_w_per_k / c3,
-            air_3: heat.air_w_per_k / c3,
+            inverse_fluid_capacity: per_c1,
+            fluid_rotor_1: heat.fluid_rotor_w_per_k * per_c1,
+            fluid_housing_1: heat.fluid_housing_w_per_k * per_c1,
+            fluid_rotor_2: heat.fluid_rotor_w_per_k * per_c2,
+            rotor_housing_2: heat.rotor_housing_w_per_k * per_c2,
+            fluid_housing_3: heat.fluid_housing_w_per_k * per_c3,
+            rotor_housing_3: heat.rotor_housing_w_per_k * per_c3,
+            air_3: heat.air_w_per_k * per_c3,
             air_k: heat.air_k,
             initial_temperature: c.initial_temperature_k,
             rise_speed: c.balloon.rise_speed_m_per_s,

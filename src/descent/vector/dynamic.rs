@@ -89,9 +89,7 @@ pub struct Factored<V> {
     weights: [V; 6],
     line_by_v: V,
     centre: [V; 3],
-    heat: [[V; 3]; 3],
-    heat_by_line: [V; 3],
-    heat_by_v: [V; 3],
+    heat: thermal::Solution<V>,
     z_by_v: V,
     z_by_line: V,
     z_by_fluid: V,
@@ -280,25 +278,28 @@ impl<V: Lanes> System<V, STATES> for Dynamic<V> {
         let by_heat = (n * m.pull_by_z).neg_mul_add(zb, a_heat);
 
         // u_Tv = (1 + ε) u_1 − ε u_2 as a combination of r and u_v.
-        let blend = |first: V, second: V| eps.mul_add(first - second, first);
-        let heat_tv_v = blend(heat_by_v[0], heat_by_v[1]);
+        let heat_tv_v = thermal::blend(eps, heat_by_v[0], heat_by_v[1]);
         let pivot = by_heat
             .mul_add(heat_tv_v, by_centre.mul_add(centre[2], by_line.mul_add(line_by_v, by_v)));
         let inverse_pivot = one / pivot;
         let gvb = pace * (m.v * m.b);
         let weights = {
-            let heat_row = |j: usize| by_heat * blend(heat[0][j], heat[1][j]);
+            let heat_row = [
+                by_heat * thermal::blend(eps, heat[0][0], heat[1][0]),
+                by_heat * thermal::blend(eps, heat[0][1], heat[1][1]),
+                by_heat * thermal::blend(eps, heat[0][2], heat[1][2]),
+            ];
             let line = by_heat.mul_add(
-                blend(heat_by_line[0], heat_by_line[1]),
+                thermal::blend(eps, heat_by_line[0], heat_by_line[1]),
                 by_centre.mul_add(centre[1], by_line.mul_add(h_gamma, pace * sw)),
             );
             [
                 -(line * inverse_pivot),
                 -((by_centre * centre[0]) * inverse_pivot),
                 (pace * (k.inverse_torque * per_pull)) * inverse_pivot,
-                (gvb.mul_add(eps, gvb) - heat_row(0)) * inverse_pivot,
-                -(gvb.mul_add(eps, heat_row(1)) * inverse_pivot),
-                -(heat_row(2) * inverse_pivot),
+                (gvb.mul_add(eps, gvb) - heat_row[0]) * inverse_pivot,
+                -(gvb.mul_add(eps, heat_row[1]) * inverse_pivot),
+                -(heat_row[2] * inverse_pivot),
             ]
         };
         Factored {
@@ -306,9 +307,7 @@ impl<V: Lanes> System<V, STATES> for Dynamic<V> {
             weights,
             line_by_v,
             centre,
-            heat,
-            heat_by_line,
-            heat_by_v,
+            heat: thermal::Solution { own: heat, by_line: heat_by_line, by_v: heat_by_v },
             z_by_v: kappa,
             z_by_line: (z * s) * inverse_p,
             z_by_fluid: -(zb.mul_add(eps, zb)),
@@ -324,11 +323,7 @@ impl<V: Lanes> System<V, STATES> for Dynamic<V> {
             + w[5].mul_add(r[5], w[4].mul_add(r[4], w[3] * r[3]));
         let u_l = f.line_by_v.mul_add(u_v, f.h_gamma * r[0]);
         let u_centre = f.centre[2].mul_add(u_v, f.centre[1].mul_add(r[0], f.centre[0] * r[1]));
-        let heat = |i: usize| {
-            let own = f.heat[i][2].mul_add(r[5], f.heat[i][1].mul_add(r[4], f.heat[i][0] * r[3]));
-            f.heat_by_v[i].mul_add(u_v, f.heat_by_line[i].mul_add(r[0], own))
-        };
-        let (u_1, u_2, u_3) = (heat(0), heat(1), heat(2));
+        let [u_1, u_2, u_3] = f.heat.solve([r[0], r[3], r[4], r[5]], u_v);
         let u_z = f
             .z_by_rotor
             .mul_add(u_2, f.z_by_fluid.mul_add(u_1, f.z_by_line.mul_add(u_l, f.z_by_v * u_v)));

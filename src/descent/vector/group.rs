@@ -50,6 +50,8 @@ pub struct Group<V, M, const N: usize> {
     pub leg: V,
     /// Step attempts so far.
     pub attempts: V,
+    /// 1 where a lane was put at a start after the others' moments were evaluated, so that it has none.
+    fresh: V,
     /// How the lane has finished, if it has.
     finished: V,
     peaks: Peaks<V>,
@@ -69,6 +71,7 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
             step,
             leg: V::splat(if M::IN_LENGTH { PAYING_OUT } else { STARTING }),
             attempts: zero,
+            fresh: zero,
             finished: zero,
             peaks: Peaks::new(),
             seen: [zero; OBSERVABLES],
@@ -77,6 +80,8 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
     }
 
     /// Puts one lane at the start of another descent; the model's constants are the caller's business.
+    /// Until the next [`Self::look`], steps leave it where it is: one idle step of a lane costs a third of
+    /// what evaluating every lane again does.
     pub fn restart(&mut self, lane: usize, state: &[f64; N], step: f64) {
         for (variable, &value) in self.state.iter_mut().zip(state) {
             variable.lanes_mut()[lane] = value;
@@ -84,6 +89,7 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
         self.step.lanes_mut()[lane] = step;
         self.leg.lanes_mut()[lane] = if M::IN_LENGTH { PAYING_OUT } else { STARTING };
         self.attempts.lanes_mut()[lane] = 0.0;
+        self.fresh.lanes_mut()[lane] = 1.0;
         self.finished.lanes_mut()[lane] = RUNNING;
         self.peaks.clear_lane(lane);
     }
@@ -104,6 +110,7 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
             length: V::select(in_length, one, zero),
             time: V::select(in_length, zero, one),
         });
+        self.fresh = zero;
         let moment = self.model.moment(&self.state);
         self.seen = self.model.observe(&self.state, &moment);
         let velocity = M::velocity(&moment);
@@ -118,10 +125,10 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
         V::splat(0.0).lt(self.finished.abs()).bits()
     }
 
-    /// Tries one step in every lane from where it stands, whose moment is given. Bit `k` of the result is
-    /// set where lane `k` accepted it.
+    /// Tries one step in every lane from where it stands, whose moment is given; fresh lanes stay. Bit `k`
+    /// of the first result is set where lane `k` tried, of the second where it accepted.
     #[inline(always)]
-    pub fn advance(&mut self, moment: &M::Moment) -> u32 {
+    pub fn advance(&mut self, moment: &M::Moment) -> (u32, u32) {
         let (zero, one) = (V::splat(0.0), V::splat(1.0));
         let limit = V::splat(TIME_LIMIT_S);
         let (y, leg) = (&mut self.state, self.leg);
@@ -136,13 +143,14 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
         let tried = V::select(last, remaining, wanted);
 
         let step = rosenbrock::step(&self.model, y, moment, tried);
-        self.attempts = self.attempts + one;
+        let trying = self.fresh.lt(V::splat(0.5));
+        self.attempts = self.attempts + (one - self.fresh);
         let error = self.model.error(&step) * self.inverse_tolerance;
         // The embedded method is of order 3. What is not a number counts as an error of 1e8.
         let size = V::splat(1e-8).max(error.min(V::splat(1e8)));
         let growth = V::splat(SAFETY) * inverse_fourth_root(size);
         let growth = V::splat(0.2).max(V::splat(5.0).min(growth));
-        let good = error.le(one);
+        let good = error.le(one).and(trying);
 
         let over_line = in_length.not().and(length.le(step.state[0]));
         let over_time = in_length.and(leg.lt(V::splat(2.5))).and(limit.le(step.state[N - 1]));
@@ -171,7 +179,7 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
         h = V::select(settled, h * M::velocity(&step.moment), h);
         h = V::select(into_line, length - y[0], h);
         h = V::select(into_time, limit - y[N - 1], h);
-        self.step = h;
+        self.step = V::select(trying, h, self.step);
         let late = V::splat(1.5).lt(leg);
         let to_the_end = V::select(late, V::splat(LANDING), V::splat(PAYING_OUT));
         let leg = V::select(settled, V::splat(PAYING_OUT), leg);
@@ -181,41 +189,28 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
         let position = V::select(in_length, y[0], y[N - 1]).abs();
         let tiny = position.mul_add(V::splat(FINEST), V::splat(f64::MIN_POSITIVE));
         let many = V::splat(MOST_STEPS).le(self.attempts);
-        let stuck = tiny.lt(h).not().or(many).and(arrived.not());
+        let stuck = tiny.lt(h).not().or(many).and(arrived.not()).and(trying);
         if stuck.any() {
             let fault = V::select(many, V::splat(MANY), V::splat(SMALL));
             self.finished = V::select(stuck, fault, self.finished);
         }
-        accepted.bits()
+        (trying.bits(), accepted.bits())
     }
 
     /// Time, velocity, the five peaks and the three temperatures, in the order of
     /// [`Outcome::values`].
     #[inline(always)]
     pub fn outcomes(&self) -> [V; 10] {
-        let top = &self.peaks.values;
-        let heat = M::FLUID;
-        // A run in line length may land by a rounding beyond the limit; one in time ends on it.
-        let limit = V::splat(TIME_LIMIT_S);
-        let time = self.state[N - 1].min(limit);
-        [
-            V::select(self.finished.lt(V::splat(1.5)), time, limit),
-            self.seen[4],
-            top[0],
-            top[1],
-            top[2].sqrt(),
-            top[3],
-            top[4],
-            self.state[heat],
-            self.state[heat + 1],
-            self.state[heat + 2],
-        ]
+        outcomes::<V, M, V, N>(&self.state, self.finished, &self.seen, &self.peaks.values)
     }
 
     /// What became of a lane that has finished.
     pub fn result(&self, lane: usize) -> Result<Outcome, Fault> {
-        let values = self.outcomes().map(|value| value.lanes()[lane]);
-        let how = self.finished.lanes()[lane];
+        let of = |value: &V| value.lanes()[lane];
+        let how = of(&self.finished);
+        let (state, seen) = (self.state.each_ref().map(of), self.seen.each_ref().map(of));
+        let peaks = self.peaks.values.each_ref().map(of);
+        let values = outcomes::<V, M, f64, N>(&state, how, &seen, &peaks);
         if !values.iter().all(|value| value.is_finite()) {
             Err(Fault::NotFinite)
         } else if how == MANY {
@@ -226,4 +221,30 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
             Ok(Outcome { deployed: how == DEPLOYED, values })
         }
     }
+}
+
+/// The outcomes of the lanes, or of one of them, in the order of [`Outcome::values`].
+#[inline(always)]
+fn outcomes<V: Lanes, M: Model<V, N>, T: Lanes, const N: usize>(
+    state: &[T; N],
+    finished: T,
+    seen: &[T; OBSERVABLES],
+    peaks: &[T; OBSERVABLES],
+) -> [T; 10] {
+    let heat = M::FLUID;
+    // A run in line length may land by a rounding beyond the limit; one in time ends on it.
+    let limit = T::splat(TIME_LIMIT_S);
+    let time = state[N - 1].min(limit);
+    [
+        T::select(finished.lt(T::splat(1.5)), time, limit),
+        seen[4],
+        peaks[0],
+        peaks[1],
+        peaks[2].sqrt(),
+        peaks[3],
+        peaks[4],
+        state[heat],
+        state[heat + 1],
+        state[heat + 2],
+    ]
 }

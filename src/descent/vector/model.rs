@@ -23,8 +23,8 @@ use super::observables::OBSERVABLES;
 use super::quasi_steady::{self, QuasiSteady};
 use super::rosenbrock::{Step, System};
 use crate::descent::model::Model as Kind;
-use crate::numerics::elementary;
 use crate::numerics::lanes::Lanes;
+use crate::numerics::lanes::elementary::exp;
 
 /// A model as the kernel's loop drives it. The first state variable is line length, the last is time.
 pub trait Model<V: Lanes, const N: usize>: System<V, N> {
@@ -115,12 +115,12 @@ impl<V: Lanes> Model<V, { dynamic::STATES }> for Dynamic<V> {
 
     /// A fraction of the fast time constant `(M η (1 − η) + J/p)/κ`, or of the time that the load alone
     /// would need for the whole line.
+    #[inline(always)]
     fn first_step(k: &Constants<f64>) -> f64 {
-        let warm = k.initial_temperature;
-        let thickening = elementary::exp(-k.minus_viscosity_temperature / warm);
+        let fluidity = exp(k.minus_viscosity_temperature / k.initial_temperature);
         let p = k.full_radius_squared;
         let mass = k.total_mass * k.payload_share * (1.0 - k.payload_share) + k.inertia / p;
-        let relaxation = mass * p / (k.torque * thickening);
+        let relaxation = mass * p * (k.inverse_torque * fluidity);
         let free_fall = (k.length * mass / k.weight).sqrt();
         0.3 * if relaxation < free_fall { relaxation } else { 0.1 * free_fall }
     }
@@ -199,9 +199,10 @@ impl<V: Lanes> Model<V, { quasi_steady::STATES }> for QuasiSteady<V> {
     }
     /// A fraction of the way made while the fluid's temperature relaxes: a longer one can hide from the
     /// error estimate.
+    #[inline(always)]
     fn first_step(k: &Constants<f64>) -> f64 {
-        let thickening = elementary::exp(-k.minus_viscosity_temperature / k.initial_temperature);
-        let velocity = k.full_radius_squared * k.weight / (k.torque * thickening);
+        let fluidity = exp(k.minus_viscosity_temperature / k.initial_temperature);
+        let velocity = k.full_radius_squared * k.weight * (k.inverse_torque * fluidity);
         let way = 0.25 * velocity / (k.fluid_rotor_1 + k.fluid_housing_1);
         let most = 0.01 * k.length;
         if way > 0.0 && way < most { way } else { most }

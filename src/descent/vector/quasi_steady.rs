@@ -55,9 +55,7 @@ pub struct Factored<V> {
     h_gamma: V,
     weights: [V; 4],
     line_by_v: V,
-    heat: [[V; 3]; 3],
-    heat_by_line: [V; 3],
-    heat_by_v: [V; 3],
+    heat: thermal::Solution<V>,
     time_by_v: V,
 }
 
@@ -145,28 +143,24 @@ impl<V: Lanes> System<V, STATES> for QuasiSteady<V> {
         }
         // (1 − v_l d − v b h) u_v = v_l hγ r_l + v b (Σ τ_j r_j + τ_l r_l)
         let vb = m.v * m.b;
-        let blend = |first: V, second: V| eps.mul_add(first - second, first);
-        let pivot =
-            vb.neg_mul_add(blend(heat_by_v[0], heat_by_v[1]), m.v_line.neg_mul_add(line_by_v, one));
+        let heat_tv_v = thermal::blend(eps, heat_by_v[0], heat_by_v[1]);
+        let pivot = vb.neg_mul_add(heat_tv_v, m.v_line.neg_mul_add(line_by_v, one));
         let inverse_pivot = one / pivot;
         let scaled_vb = vb * inverse_pivot;
-        let weight = |j: usize| scaled_vb * blend(heat[0][j], heat[1][j]);
         let weights = [
             scaled_vb.mul_add(
-                blend(heat_by_line[0], heat_by_line[1]),
+                thermal::blend(eps, heat_by_line[0], heat_by_line[1]),
                 (m.v_line * h_gamma) * inverse_pivot,
             ),
-            weight(0),
-            weight(1),
-            weight(2),
+            scaled_vb * thermal::blend(eps, heat[0][0], heat[1][0]),
+            scaled_vb * thermal::blend(eps, heat[0][1], heat[1][1]),
+            scaled_vb * thermal::blend(eps, heat[0][2], heat[1][2]),
         ];
         Factored {
             h_gamma,
             weights,
             line_by_v,
-            heat,
-            heat_by_line,
-            heat_by_v,
+            heat: thermal::Solution { own: heat, by_line: heat_by_line, by_v: heat_by_v },
             time_by_v: -((alpha * g) * inverse_c),
         }
     }
@@ -176,12 +170,9 @@ impl<V: Lanes> System<V, STATES> for QuasiSteady<V> {
         let w = &f.weights;
         let u_v = w[1].mul_add(r[1], w[0] * r[0]) + w[3].mul_add(r[3], w[2] * r[2]);
         let u_l = f.line_by_v.mul_add(u_v, f.h_gamma * r[0]);
-        let heat = |i: usize| {
-            let own = f.heat[i][2].mul_add(r[3], f.heat[i][1].mul_add(r[2], f.heat[i][0] * r[1]));
-            f.heat_by_v[i].mul_add(u_v, f.heat_by_line[i].mul_add(r[0], own))
-        };
+        let [u_1, u_2, u_3] = f.heat.solve([r[0], r[1], r[2], r[3]], u_v);
         let u_t = f.time_by_v.mul_add(u_v, f.h_gamma * r[4]);
-        [u_l, heat(0), heat(1), heat(2), u_t]
+        [u_l, u_1, u_2, u_3, u_t]
     }
 }
 

@@ -63,12 +63,7 @@ pub fn run<V: Lanes, M: Model<V, N>, const N: usize>(
     while live != 0 {
         let moment = group.look();
         let mut done = group.finished() & live;
-        if done == 0 {
-            let rejected = u64::from((!group.advance(&moment) & live).count_ones());
-            counts.rejected += rejected;
-            counts.evaluations += STAGES as u64 * u64::from(live.count_ones()) - rejected;
-            continue;
-        }
+        let refill = done != 0;
         while done != 0 {
             let lane = done.trailing_zeros() as usize;
             done &= done - 1;
@@ -84,12 +79,18 @@ pub fn run<V: Lanes, M: Model<V, N>, const N: usize>(
                 None => live &= !(1 << lane),
             }
         }
-        // The refilled lanes' right-hand sides are evaluated with all the others' again.
-        notice_cross(&mut group);
+        if refill {
+            notice_cross(&mut group);
+        }
+        let (tried, accepted) = group.advance(&moment);
+        let rejected = u64::from((tried & !accepted & live).count_ones());
+        counts.rejected += rejected;
+        counts.evaluations += STAGES as u64 * u64::from((tried & live).count_ones()) - rejected;
     }
     counts
 }
 
+#[inline(always)]
 fn load<V: Lanes, M: Model<V, N>, const N: usize>(
     group: &mut Group<V, M, N>,
     lane: usize,

@@ -64,3 +64,34 @@ pub fn cofactors<V: Lanes>(k: &Constants<V>, c: V, feedback: V) -> Cofactors<V> 
     let determinant = b13.neg_mul_add(minor13, b12.neg_mul_add(minor12, a11 * minor11));
     Cofactors { adjugate, determinant }
 }
+
+/// `u_Tv = (1 + ε) u_1 − ε u_2`: how the viscosity's temperature follows fluid and rotors.
+#[inline(always)]
+pub fn blend<V: Lanes>(averaging_offset: V, fluid: V, rotor: V) -> V {
+    averaging_offset.mul_add(fluid - rotor, fluid)
+}
+
+/// The temperatures' part of a step's solution. (Functions, not closures: those cannot be told to be inlined,
+/// and one that is not makes every operation in it a call.)
+pub struct Solution<V> {
+    /// `u_Ti` by the right side of each temperature's own rows.
+    pub own: [[V; 3]; 3],
+    /// `u_Ti` by the right side of the line's row.
+    pub by_line: [V; 3],
+    /// `u_Ti` by `u_v`.
+    pub by_v: [V; 3],
+}
+
+impl<V: Lanes> Solution<V> {
+    /// The three `u_Ti`, given the right sides of line, fluid, rotors and housing, and `u_v`.
+    #[inline(always)]
+    pub fn solve(&self, r: [V; 4], u_v: V) -> [V; 3] {
+        let mut u = [u_v; 3];
+        for (i, value) in u.iter_mut().enumerate() {
+            let [first, second, third] = self.own[i];
+            let own = third.mul_add(r[3], second.mul_add(r[2], first * r[1]));
+            *value = self.by_v[i].mul_add(u_v, self.by_line[i].mul_add(r[0], own));
+        }
+        u
+    }
+}

@@ -1,9 +1,9 @@
 //! Where in the plane of the two strongest inputs a breach happens.
 
+use crate::campaign::common_numbers::CommonSample;
 use crate::campaign::{self, Record};
 use crate::error::Result;
 use crate::findings::drivers::{DriverOutput, DriversFinding};
-use crate::numerics::columns::Columns;
 use crate::sensitivity::pick_freeze::Factor;
 use crate::study::Study;
 use serde::Serialize;
@@ -22,10 +22,24 @@ pub struct Interaction {
     pub x: InteractionInput,
     /// The next.
     pub y: InteractionInput,
+    /// Which samples of the run are shown, by their index: their values are the rows of the table of samples.
+    pub samples: Samples,
     /// Whether each sample breached any limit.
+    #[serde(skip)]
     pub breached: Vec<bool>,
     /// How many of them, the last ones, are breaches of later samples, added because they are rare.
     pub added: usize,
+}
+
+/// Which samples are shown.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Samples {
+    /// All of the first so many that could be computed.
+    pub first: usize,
+    /// Breaches among the later ones.
+    pub and: Vec<usize>,
+    /// How many of the first ones breached.
+    pub breached: usize,
 }
 
 /// One input of each sample shown.
@@ -35,7 +49,8 @@ pub struct InteractionInput {
     pub path: String,
     /// How many inputs are averaged.
     pub inputs: usize,
-    /// Values, SI.
+    /// Values, SI: too many for a tree of findings.
+    #[serde(skip)]
     pub values: Vec<f64>,
 }
 
@@ -73,8 +88,10 @@ pub(super) fn interaction(
     let missing = WANTED.saturating_sub(seen);
     let rest: Vec<usize> = (shown..total).filter(|&k| breached(k)).take(missing).collect();
     let added = rest.len();
+    let samples = Samples { first: shown, breached: seen, and: rest.clone() };
     chosen.extend(rest);
-    let draws = draws(study, &chosen)?;
+    let sample = CommonSample::of_rows(study, &chosen)?;
+    let draws = sample.inputs();
     let input = |name: &str, columns: &[usize]| InteractionInput {
         path: name.trim_end_matches(" (all)").to_owned(),
         inputs: columns.len(),
@@ -84,6 +101,7 @@ pub(super) fn interaction(
     };
     Ok(Ok(Interaction {
         output: output.title.clone(),
+        samples,
         x: input(first, &x.columns),
         y: input(second, &y.columns),
         breached: chosen.iter().map(|&k| breached(k)).collect(),
@@ -113,24 +131,4 @@ fn strongest<'a>(
             _ => None,
         }
     })
-}
-
-/// The inputs of these samples again: a sample is a function of its index.
-fn draws(study: &Study, chosen: &[usize]) -> Result<Columns> {
-    let sampler = campaign::sampler(study)?;
-    let dimension = sampler.dimension();
-    let mut points = Columns::new(chosen.len(), dimension);
-    let mut start = 0;
-    while start < chosen.len() {
-        let run = chosen[start..].windows(2).take_while(|pair| pair[1] == pair[0] + 1).count() + 1;
-        let mut block = Columns::new(run, dimension);
-        sampler.fill(chosen[start] as u64, &mut block)?;
-        for j in 0..dimension {
-            points.column_mut(j)[start..start + run].copy_from_slice(block.column(j));
-        }
-        start += run;
-    }
-    let mut draws = Columns::new(chosen.len(), dimension);
-    study.joint.from_uniform(&points, &mut draws);
-    Ok(draws)
 }

@@ -17,6 +17,7 @@ pub use convergence::{Checkpoint, Convergence};
 pub use distribution::{Distribution, Exceedance};
 pub use fan::{Fan, FanBand};
 pub use interaction::{Interaction, InteractionInput};
+pub(crate) use paper::held_temperature;
 pub use paper::{ConstantTemperature, PaperRuns, paper_runs};
 
 /// The numbers behind every figure of a run.

@@ -28,6 +28,12 @@ const EXP: [f64; 11] = [
     2.091_471_734_171_638e-09,
 ];
 
+/// Two terms of [`EXP`]'s polynomial.
+#[inline(always)]
+fn pair<V: Lanes>(r: V, k: usize) -> V {
+    r.mul_add(V::splat(EXP[k + 1]), V::splat(EXP[k]))
+}
+
 /// Natural exponential of −708 ≤ x ≤ 708; outside, that of the nearer end. Not a number for none.
 #[inline(always)]
 pub fn exp<V: Lanes>(x: V) -> V {
@@ -38,10 +44,9 @@ pub fn exp<V: Lanes>(x: V) -> V {
     // Estrin's scheme: the depth of the chain, not the number of operations, is what costs here.
     let r2 = r * r;
     let r4 = r2 * r2;
-    let pair = |k: usize| r.mul_add(V::splat(EXP[k + 1]), V::splat(EXP[k]));
-    let low = r2.mul_add(pair(2), pair(0));
-    let middle = r2.mul_add(pair(6), pair(4));
-    let high = r2.mul_add(V::splat(EXP[10]), pair(8));
+    let low = r2.mul_add(pair(r, 2), pair(r, 0));
+    let middle = r2.mul_add(pair(r, 6), pair(r, 4));
+    let high = r2.mul_add(V::splat(EXP[10]), pair(r, 8));
     let q = r4.mul_add(r4.mul_add(high, middle), low);
     // 1 + r is split into its rounded value and the rest, so that only the last addition rounds at the
     // result's own size.

@@ -53,6 +53,25 @@ impl Axis {
         matches!(self.scale, Scale::Counts | Scale::ShareDecades)
     }
 
+    /// The widest tick of a logarithmic axis of probabilities, which is the lowest; nothing for others.
+    pub fn widest_decade(&self) -> String {
+        if self.scale != Scale::ShareDecades || self.min <= 0.0 {
+            return String::new();
+        }
+        let lowest = std::iter::successors(Some(1.0), |decade: &f64| Some(decade / 10.0))
+            .take_while(|decade| *decade > 0.999 * self.min && *decade > 0.9e-5)
+            .last();
+        format!("{} %", number(100.0 * lowest.unwrap_or(1.0), 3))
+    }
+
+    /// What a tick at its right end says.
+    pub fn last_tick(&self) -> String {
+        match self.format() {
+            TickFormat::Custom(write) => write(self.max),
+            _ => String::new(),
+        }
+    }
+
     /// How its ticks are written.
     pub fn format(&self) -> TickFormat {
         match self.scale {

@@ -1,6 +1,7 @@
 //! One panel: axes, marks, labelled limits and a key above, on kuva's scene.
 
 use super::axis::Axis;
+use super::key::{SWATCH, Swatch, key_rows, text_width};
 use super::svg::accessible;
 use kuva::backend::svg::SvgBackend;
 use kuva::prelude::{Layout, Theme};
@@ -30,18 +31,9 @@ const CARD: &str = "#ffffff";
 pub(super) const WIDTH: f64 = 520.0;
 /// Usual height.
 pub(super) const HEIGHT: f64 = 330.0;
-const TICK_SIZE: u32 = 13;
+pub(super) const TICK_SIZE: u32 = 13;
 const LABEL_SIZE: u32 = 14;
 const ROW: f64 = 19.0;
-const SWATCH: f64 = 18.0;
-
-/// How a key's swatch looks.
-#[derive(Debug, Clone)]
-pub(super) enum Swatch {
-    Area(&'static str, f64),
-    Line(&'static str, bool),
-    Dot(&'static str),
-}
 
 /// A panel being drawn.
 pub(super) struct Chart {
@@ -113,10 +105,20 @@ impl Chart {
             layout = layout.with_y_categories(rows);
         }
         let mut computed = ComputedLayout::from_layout(&layout);
+        // kuva takes the width of the ticks on a logarithmic axis for that of its ends.
+        let wider = (text_width(&y.widest_decade()) - computed.y_tick_label_px).max(0.0);
+        computed.y_tick_label_px += wider;
+        computed.margin_left += wider;
+        if !y.label.is_empty() {
+            let beside = computed.y_tick_label_px + 16.0 + 1.5 * f64::from(LABEL_SIZE);
+            computed.margin_left = computed.margin_left.max(beside);
+        }
         let lines = key_rows(&keys, WIDTH - 16.0).len() as f64;
         let header = 6.0 + lines * ROW;
         computed.margin_top = header + if vertical_limits { ROW + 4.0 } else { 6.0 };
-        computed.margin_right = computed.margin_right.max(22.0);
+        // The last tick's label is centred on the axis's end.
+        computed.margin_right =
+            computed.margin_right.max(0.5 * text_width(&x.last_tick()) + 4.0).max(22.0);
         computed.recompute_transforms();
         let mut scene = Scene::new(WIDTH, height);
         scene.background_color = Some(CARD.to_owned());
@@ -223,6 +225,52 @@ impl Chart {
             stroke_width: width,
             stroke_dasharray: dashed.then(|| "6 4".to_owned()),
         });
+    }
+
+    /// Closed polygons filled as one, so that those that share an edge show no seam.
+    pub fn region(&mut self, polygons: &[Vec<(f64, f64)>], fill: &str) {
+        let path = |polygon: &Vec<(f64, f64)>| self.path(polygon) + "Z";
+        let d: String = polygons.iter().map(path).collect();
+        self.path_of(d, Color::from(fill), Color::None, 0.0);
+    }
+
+    /// Many short lines as one curve, such as a contour.
+    pub fn contour(&mut self, segments: &[[(f64, f64); 2]], stroke: &str, width: f64) {
+        let d: String = segments.iter().map(|segment| self.path(segment)).collect();
+        self.path_of(d, Color::None, Color::from(stroke), width);
+    }
+
+    fn path(&self, points: &[(f64, f64)]) -> String {
+        let mut d = String::new();
+        for (k, &(x, y)) in points.iter().enumerate() {
+            let (x, y) = self.place(x, y);
+            d += &format!("{}{x:.2} {y:.2}", if k == 0 { "M" } else { "L" });
+        }
+        d
+    }
+
+    fn path_of(&mut self, d: String, fill: Color, stroke: Color, stroke_width: f64) {
+        if d.is_empty() {
+            return;
+        }
+        self.add(Primitive::Path(Box::new(PathData {
+            d,
+            fill: Some(fill),
+            stroke,
+            stroke_width,
+            opacity: None,
+            stroke_dasharray: None,
+        })));
+    }
+
+    /// A short text centred at a point of the panel, kept inside it.
+    pub fn note(&mut self, (x, y): (f64, f64), content: &str) {
+        let (x, y) = self.place(x, y);
+        let (c, half) = (&self.computed, text_width(content) / 2.0 + 3.0);
+        let (left, right) = (c.margin_left + half, c.width - c.margin_right - half);
+        let (top, bottom) = (c.margin_top + 14.0, c.height - c.margin_bottom - 5.0);
+        let (x, y) = (x.clamp(left, right.max(left)), (y + 4.5).clamp(top, bottom.max(top)));
+        self.text(x, y, content.to_owned(), TextAnchor::Middle);
     }
 
     /// Dots.
@@ -350,52 +398,5 @@ impl Chart {
             },
         };
         self.add(primitive);
-    }
-}
-
-/// The width of a label, a little more than it is in the widest of the fonts asked for; kuva's own metrics
-/// are not public.
-fn text_width(text: &str) -> f64 {
-    let em = |c: char| match c {
-        'i' | 'j' | 'l' | 't' | 'f' | 'r' | '.' | ',' | ':' | ' ' | '(' | ')' | '/' => 0.41,
-        'm' | 'w' | 'M' | 'W' | '%' => 0.97,
-        'A'..='Z' => 0.72,
-        _ => 0.64,
-    };
-    f64::from(TICK_SIZE) * text.chars().map(em).sum::<f64>()
-}
-
-/// Keys from left to right, wrapped: for each row, the place and index of its members.
-fn key_rows(keys: &[(Swatch, String)], width: f64) -> Vec<Vec<(f64, usize)>> {
-    let mut rows: Vec<Vec<(f64, usize)>> = Vec::new();
-    let mut x = f64::INFINITY;
-    for (k, (_, label)) in keys.iter().enumerate() {
-        let wide = SWATCH + 6.0 + text_width(label);
-        if x + wide > width {
-            rows.push(Vec::new());
-            x = 0.0;
-        }
-        if let Some(row) = rows.last_mut() {
-            row.push((x, k));
-        }
-        x += wide + 18.0;
-    }
-    rows
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn property_keys_wrap_inside_the_width() {
-        let keys: Vec<_> =
-            (0..7).map(|k| (Swatch::Dot(BLUE), format!("a key, number {k}"))).collect();
-        let rows = key_rows(&keys, 400.0);
-        assert!(rows.len() > 1);
-        assert_eq!(rows.iter().map(Vec::len).sum::<usize>(), keys.len());
-        for (x, k) in rows.into_iter().flatten() {
-            assert!(x + SWATCH + 6.0 + text_width(&keys[k].1) <= 400.0);
-        }
     }
 }

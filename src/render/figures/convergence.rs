@@ -2,7 +2,8 @@
 
 use super::Figure;
 use super::axis::Axis;
-use super::chart::{BLUE, Chart, HEIGHT, Swatch};
+use super::chart::{BLUE, Chart, HEIGHT};
+use super::key::Swatch;
 use crate::findings::Convergence;
 use crate::render::figures_of_speech::{count, probability};
 

@@ -2,7 +2,8 @@
 
 use super::Figure;
 use super::axis::Axis;
-use super::chart::{BLUE, Chart, HEIGHT, INK, Swatch, VERMILLION};
+use super::chart::{BLUE, Chart, HEIGHT, INK, VERMILLION};
+use super::key::Swatch;
 use crate::descent::OutcomeQuantity;
 use crate::findings::{CONFIDENCE, Distribution};
 use crate::render::figures_of_speech::{bare, count, probability, value};

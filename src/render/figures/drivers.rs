@@ -2,7 +2,8 @@
 
 use super::Figure;
 use super::axis::Axis;
-use super::chart::{BLUE, Chart, INK, Swatch};
+use super::chart::{BLUE, Chart, INK};
+use super::key::Swatch;
 use crate::findings::{CONFIDENCE, DriverOutput, FactorFinding, Findings};
 use crate::numerics::interval::Estimate;
 use crate::render::driver_view::ranked;

@@ -2,7 +2,8 @@
 
 use super::Figure;
 use super::axis::Axis;
-use super::chart::{BLUE, Chart, HEIGHT, INK, Swatch};
+use super::chart::{BLUE, Chart, HEIGHT, INK};
+use super::key::Swatch;
 use crate::descent::OutcomeQuantity;
 use crate::findings::{Distribution, Fan, FanBand, Findings};
 use crate::render::figures_of_speech::count;

@@ -2,7 +2,8 @@
 
 use super::Figure;
 use super::axis::Axis;
-use super::chart::{BLUE, Chart, GREEN, HEIGHT, INK, ORANGE, Swatch, VERMILLION};
+use super::chart::{BLUE, Chart, GREEN, HEIGHT, INK, ORANGE, VERMILLION};
+use super::key::Swatch;
 use crate::findings::CONFIDENCE;
 use crate::findings::known::{GoAnswer, GoChart};
 use crate::physics::Parameter;

@@ -2,7 +2,8 @@
 
 use super::Figure;
 use super::axis::Axis;
-use super::chart::{BLUE, Chart, Swatch, VERMILLION};
+use super::chart::{BLUE, Chart, VERMILLION};
+use super::key::Swatch;
 use crate::findings::{Interaction, InteractionInput};
 use crate::physics::Parameter;
 use crate::render::figures_of_speech::count;

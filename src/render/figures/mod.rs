@@ -18,20 +18,30 @@
 mod axis;
 mod calibration;
 mod chart;
+mod contour;
 mod convergence;
+mod curves;
 mod distribution;
 mod drivers;
 mod fan;
 mod go;
+mod go_map;
 mod interaction;
+mod key;
 mod paper;
+mod rig;
 mod svg;
+mod sweep;
+mod sweep_map;
 mod trade;
 
 use crate::findings::Findings;
 
 pub use calibration::calibration_figures;
 pub use paper::paper_figures;
+pub use paper::{paper_figures, starting_temperature_figure};
+pub use rig::{rig_figures, rig_mode_figures};
+pub use sweep::sweep_figures;
 
 /// One figure.
 #[derive(Debug, Clone, PartialEq)]
@@ -103,7 +113,13 @@ pub fn figures(findings: &Findings) -> ReportFigures {
             .chain(data.interaction.as_ref().ok().and_then(interaction::figure))
             .collect(),
         trade: trade::figure(findings).into_iter().collect(),
-        known: findings.known.charts.iter().filter_map(go::figure).collect(),
+        known: findings
+            .known
+            .charts
+            .iter()
+            .filter_map(go::figure)
+            .chain(findings.known.map.as_ref().and_then(go_map::figure))
+            .collect(),
         descents: fan::figures(findings),
     }
 }

@@ -2,10 +2,12 @@
 
 use super::Figure;
 use super::axis::Axis;
-use super::chart::{BLUE, Chart, HEIGHT, Swatch, VERMILLION};
+use super::chart::{BLUE, Chart, HEIGHT, VERMILLION};
+use super::curves;
+use super::key::Swatch;
 use crate::descent::reference::Sample;
 use crate::findings::PaperRuns;
-use crate::units::{Quantity, display};
+use crate::units::{Quantity, display, number};
 
 /// Torque in the paper's unit of force and its unit of the brake's radii's foot.
 const POUND_FEET: f64 = 1.0 / (4.448_221_615_260_5 * 0.3048);
@@ -66,7 +68,8 @@ fn comparison(runs: &PaperRuns) -> Option<Figure> {
     let title = "Figure 4: dynamic and steady solution at constant temperature".to_owned();
     let ends = [&runs.constant_temperature.dynamic, &runs.constant_temperature.steady]
         .map(|run| run.samples.last().map_or(0.0, |sample| sample.time_s));
-    let settled = settling_time_s(runs)
+    let settled = runs
+        .settling_time_s()
         .map_or("does not come".to_owned(), |s| format!("comes within {s:.2} s"));
     let caption = format!(
         "The first {FIRST_SECONDS} s of a run in which the fluid is kept at its initial temperature: the \
@@ -79,40 +82,55 @@ fn comparison(runs: &PaperRuns) -> Option<Figure> {
     Some(Figure { name: name.to_owned(), title, caption, alternative, svg })
 }
 
-/// The time from which on the dynamic reel speed stays within 1 % of the steady one, s.
-fn settling_time_s(runs: &PaperRuns) -> Option<f64> {
-    let steady = &runs.constant_temperature.steady.samples;
-    let speed_at = |time_s: f64| {
-        let k = steady.partition_point(|s| s.time_s < time_s);
-        let (before, after) = (steady.get(k.checked_sub(1)?)?, steady.get(k)?);
-        let share = (time_s - before.time_s) / (after.time_s - before.time_s);
-        Some(before.observation[2] + share * (after.observation[2] - before.observation[2]))
-    };
-    let apart = |s: &&Sample| {
-        speed_at(s.time_s).is_some_and(|steady| (s.observation[2] / steady - 1.0).abs() > 0.01)
-    };
-    let last_apart = runs.constant_temperature.dynamic.samples.iter().rposition(|s| apart(&s))?;
-    runs.constant_temperature.dynamic.samples.get(last_apart + 1).map(|s| s.time_s)
-}
-
 /// One of figures 5 to 9: a reading over time.
-fn course(runs: &PaperRuns, (number, name, title, label, read): Curve) -> Option<Figure> {
+fn course(runs: &PaperRuns, (place, name, title, label, read): Curve) -> Option<Figure> {
     let points: Vec<(f64, f64)> =
         runs.descent.samples.iter().map(|s| (s.time_s, read(s))).collect();
     let (first, last) = (points.first()?, points.last()?);
     let top = points.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let low = points.iter().map(|p| p.1).fold(0.0, f64::min);
-    let name = format!("figure-{number}-{name}");
+    let name = format!("figure-{place}-{name}");
     let x = Axis::linear("time since release (s)", 0.0, last.0);
     let y = Axis::linear(label, low, top.1 + 0.06 * (top.1 - low));
     let mut chart = Chart::new(&name, HEIGHT, &x, &y, Vec::new(), false);
     chart.line(&points, BLUE, 2.2, false);
     let caption = format!(
-        "From {:.4} at release, at most {:.4} after {:.1} s, to {:.4} at the end.",
-        first.1, top.1, top.0, last.1
+        "From {} at release, at most {} after {} s, to {} at the end.",
+        number(first.1, 4),
+        number(top.1, 4),
+        number(top.0, 3),
+        number(last.1, 4)
     );
-    let title = format!("Figure {number}: {}", title.to_lowercase());
+    let title = format!("Figure {place}: {}", title.to_lowercase());
     let alternative = format!("Curve over the {:.0} s of the run. {caption}", last.0);
     let svg = chart.svg(&title, &alternative);
     Some(Figure { name, title, caption, alternative, svg })
+}
+
+/// Figure 10: velocity along the run from several starting temperatures (°F).
+pub fn starting_temperature_figure(family: &[(f64, Vec<Sample>)]) -> Option<Figure> {
+    let unit = display(Quantity::Speed);
+    let curves: Vec<curves::Curve> = family
+        .iter()
+        .map(|(start, samples)| curves::Curve {
+            name: format!("{start:.0} °F"),
+            points: samples.iter().map(|s| (s.time_s, unit.shown(s.observation[4]))).collect(),
+            dots: false,
+        })
+        .collect();
+    let times: Vec<String> = family
+        .iter()
+        .filter_map(|(start, samples)| Some((start, samples.last()?.time_s)))
+        .map(|(start, time)| format!("{time:.0} s from {start:.0} °F"))
+        .collect();
+    let panel = curves::Panel {
+        name: "figure-10-starting-temperatures",
+        title: "Figure 10: velocity from several starting temperatures".to_owned(),
+        caption: format!("Each curve ends with the line: {}.", times.join(", ")),
+        x: "time since release (s)",
+        y: format!("separation velocity ({})", unit.symbol),
+        from_zero: true,
+        limit: None,
+    };
+    curves::figure(panel, &curves, true)
 }

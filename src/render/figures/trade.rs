@@ -2,14 +2,27 @@
 
 use super::Figure;
 use super::axis::Axis;
-use super::chart::{Chart, HEIGHT, PALETTE, Swatch};
-use crate::findings::Findings;
-use crate::findings::trade::TradeCurve;
+use super::chart::{Chart, HEIGHT, PALETTE};
+use super::key::Swatch;
+use crate::findings::trade::{TradeCurve, TradePoint};
+use crate::findings::{CONFIDENCE, Findings};
 use crate::render::figures_of_speech::probability;
 use crate::units::number;
 
 /// Curves drawn in a colour of their own: the ones that move P most.
 const SHOWN: usize = 5;
+
+/// P at the card's own spread plus the interval of the difference to it, by common random numbers: what tells
+/// the curves from each other. P itself is known to less than that, alike for all of them.
+fn band(curve: &TradeCurve) -> Vec<(f64, f64, f64)> {
+    let own = curve.points.iter().find(|p| p.difference.interval.why_none().is_some());
+    let Some(base) = own.and_then(|point| point.probability.value) else { return Vec::new() };
+    let ends = |point: &TradePoint| match point.difference.interval.interval() {
+        Some(i) => Some((point.setting, base + i.lower, base + i.upper)),
+        None => Some((point.setting, point.probability.value?, point.probability.value?)),
+    };
+    curve.points.iter().filter_map(ends).collect()
+}
 
 /// The curves of the factors whose spread moves P(any breach) most; nothing without a trade.
 pub(super) fn figure(findings: &Findings) -> Option<Figure> {
@@ -38,6 +51,9 @@ pub(super) fn figure(findings: &Findings) -> Option<Figure> {
         (low, points().map(read).fold(f64::NEG_INFINITY, f64::max))
     };
     let ((left, right), (lowest, highest)) = (ends(|p| p.0), ends(|p| p.1));
+    let bands = || curves.iter().flat_map(|(curve, _)| band(curve));
+    let lowest = bands().map(|(_, low, _)| low).fold(lowest, f64::min).max(0.0);
+    let highest = bands().map(|(_, _, high)| high).fold(highest, f64::max);
     // What is allowed belongs to the picture if the curves come anywhere near it.
     let near = allowed.filter(|a| *a > lowest - 3.0 * (highest - lowest));
     let low = near.map_or(lowest, |a| a.min(lowest));
@@ -52,6 +68,9 @@ pub(super) fn figure(findings: &Findings) -> Option<Figure> {
     let y = Axis::shares("probability of any breach", (low - room).max(0.0), high + room);
     let name = "trade-spread";
     let mut chart = Chart::new(name, HEIGHT + 30.0, &x, &y, keys, false);
+    for (k, (curve, _)) in curves.iter().enumerate() {
+        chart.band(&band(curve), PALETTE[k], 0.18);
+    }
     for (k, (_, points)) in curves.iter().enumerate() {
         chart.line(points, PALETTE[k], 2.2, k % 2 == 1);
         chart.dots(points, PALETTE[k], 3.2, 1.0);
@@ -62,8 +81,9 @@ pub(super) fn figure(findings: &Findings) -> Option<Figure> {
     let title = "What a tighter tolerance is worth".to_owned();
     let mut caption = format!(
         "P(any breach) when one spread alone is multiplied, for the {} factors that move it most, all on the \
-         same random numbers.",
-        curves.len()
+         same random numbers. Shaded: {} interval of the difference to the card's own spread, where the bands meet.",
+        curves.len(),
+        probability(CONFIDENCE)
     );
     if let (Some(allowed), None) = (allowed, near) {
         caption += &format!(" What is allowed, {}, lies far below the axis.", probability(allowed));

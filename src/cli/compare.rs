@@ -1,0 +1,79 @@
+//! `reeldown compare`: what changed between two finished runs.
+
+use super::arguments::CompareArguments;
+use super::output::say;
+use super::{Ending, done, parentage};
+use crate::campaign::ROW_GROUP;
+use crate::error::{Error, Result};
+use crate::findings::compare::{FinishedRun, compare as findings};
+use crate::render;
+use crate::store::{OutcomesReader, write_text};
+use serde_json::Value;
+use std::path::Path;
+
+/// The layout of `findings.json` that this version reads.
+const FORMAT: u64 = 1;
+const HELP: &str = "name the directories of two runs that `reeldown run` has finished";
+
+/// Reads two runs, compares and shows them.
+pub(super) fn compare(arguments: &CompareArguments) -> Result<Ending> {
+    let [before, after] = [&arguments.before, &arguments.after].map(|path| read(path));
+    let finding = findings(&before?, &after?)?;
+    if let Some(path) = &arguments.markdown {
+        write_text(path, &render::compare_markdown(&finding))?;
+    }
+    if arguments.json {
+        let json = serde_json::to_string_pretty(&finding)
+            .map_err(|reason| Error::argument(format!("it cannot be written: {reason}")))?;
+        return done(&json);
+    }
+    say(&render::compare_terminal(&finding))?;
+    Ok(Ending::Done)
+}
+
+/// One run: its findings, its study out of its table's footer, and its margins.
+fn read(directory: &Path) -> Result<FinishedRun> {
+    let fail = |reason: String| Error::file(directory, "compare", reason, HELP);
+    if !directory.is_dir() {
+        return Err(fail("there is no such directory".to_owned()));
+    }
+    let (json, table) = (directory.join("findings.json"), directory.join("outcomes.parquet"));
+    for file in [&json, &table] {
+        if !file.is_file() {
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            return Err(fail(format!("it is no finished run: it lacks {name}")));
+        }
+    }
+    let text =
+        std::fs::read_to_string(&json).map_err(|why| Error::file(&json, "read", why, HELP))?;
+    let findings: Value = serde_json::from_str(&text)
+        .map_err(|why| Error::file(&json, "read", format!("it is not JSON: {why}"), HELP))?;
+    let made_by = findings["reproduction"]["version"].as_str().unwrap_or("an unknown version");
+    if findings["format"].as_u64() != Some(FORMAT) || made_by != env!("CARGO_PKG_VERSION") {
+        let here = env!("CARGO_PKG_VERSION");
+        let reason = format!("its findings are of reeldown {made_by}, and this is {here}");
+        let help = "run its study again with this version: the report says how";
+        return Err(Error::file(&json, "compare", reason, help));
+    }
+    let reader = OutcomesReader::open(&table)?;
+    let entry = |key: &str| reader.parentage().0.get(key).map(String::as_str);
+    if entry("study_digest") != findings["reproduction"]["study_digest"].as_str()
+        || Some(reader.rows()) != findings["method"]["samples"].as_u64()
+    {
+        let reason = "findings.json and outcomes.parquet are of different runs".to_owned();
+        let help = "finish the run: reeldown run --resume";
+        return Err(Error::file(directory, "compare", reason, help));
+    }
+    let study = parentage::study(&table, reader.parentage())?;
+    let mut margins = vec![Vec::with_capacity(reader.rows() as usize); study.limits.len()];
+    let mut next = 0;
+    while next < reader.rows() {
+        let rows = (reader.rows() - next).min(ROW_GROUP) as usize;
+        let part = reader.read(&study, next, rows)?;
+        for (limit, margins) in study.limits.iter().zip(&mut margins) {
+            margins.extend(part.outcome(limit.outcome).iter().map(|&v| limit.margin_of(v)));
+        }
+        next += rows as u64;
+    }
+    Ok(FinishedRun { name: directory.display().to_string(), study, findings, margins })
+}

@@ -1,0 +1,80 @@
+//! `reeldown paper`: the paper's figures and statements, held against a design.
+
+use super::arguments::PaperArguments;
+use super::run::quoted;
+use super::{Ending, done};
+use crate::error::{Error, Result};
+use crate::findings::paper::{PaperFinding, paper as findings};
+use crate::physics::Parameter;
+use crate::render::{paper_page, table};
+use crate::store::write_text;
+use crate::study::Study;
+use crate::units::engineering;
+
+/// Draws the figures, writes the page, says what agrees.
+pub(super) fn paper(arguments: &PaperArguments) -> Result<Ending> {
+    let study = arguments.study.load(&[])?;
+    study.design.validate()?;
+    let finding = findings(&study)?;
+    if let Some(directory) = &arguments.out {
+        let page = paper_page(&finding, &design(&study), &command(arguments));
+        for figure in &page.figures {
+            write_text(&directory.join("figures").join(figure.file_name()), &figure.svg)?;
+        }
+        write_text(&directory.join("report.md"), &page.markdown)?;
+        write_text(&directory.join("paper.json"), &format!("{}\n", json(&finding)?))?;
+    }
+    if arguments.json {
+        return done(&json(&finding)?);
+    }
+    let rows = finding.statements.iter().map(|statement| {
+        [
+            if statement.agrees { "pass" } else { "FAIL" }.to_owned(),
+            statement.place.to_owned(),
+            statement.says.to_owned(),
+            statement.found.clone(),
+        ]
+    });
+    let agree = finding.statements.iter().filter(|statement| statement.agrees).count();
+    let mut text = format!(
+        "{agree} of the paper's {} statements agree\n\n{}\n",
+        finding.statements.len(),
+        table(&["", "where", "the paper says", "here"], 0..0, rows, Some(118))
+    );
+    for statement in finding.statements.iter().filter(|statement| !statement.agrees) {
+        if let Some(remark) = &statement.remark {
+            text += &format!("\n{}: {remark}.\n", statement.place);
+        }
+    }
+    if let Some(directory) = &arguments.out {
+        text += &format!("\nreport: {}\n", directory.join("report.md").display());
+    }
+    done(&text)
+}
+
+fn json(finding: &PaperFinding) -> Result<String> {
+    serde_json::to_string_pretty(finding)
+        .map_err(|reason| Error::argument(format!("the findings cannot be written: {reason}")))
+}
+
+/// The design in a sentence.
+fn design(study: &Study) -> String {
+    let shown =
+        |parameter: Parameter| engineering(study.design.get(parameter), parameter.info().quantity);
+    format!(
+        "the design of \"{}\": {} of line, fluid of {}, start at {}.",
+        study.title,
+        shown(Parameter::ReelLineLength),
+        shown(Parameter::FluidNominalViscosity),
+        shown(Parameter::InitialTemperature)
+    )
+}
+
+/// The command that writes the same page.
+fn command(arguments: &PaperArguments) -> String {
+    let mut words = vec!["reeldown".to_owned(), "paper".to_owned()];
+    words.extend(arguments.study.study.iter().map(|study| quoted(&study.display().to_string())));
+    words.extend(arguments.study.set.iter().map(|set| format!("--set {}", quoted(set))));
+    words.push("--out DIR".to_owned());
+    words.join(" ")
+}

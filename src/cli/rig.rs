@@ -1,0 +1,235 @@
+//! `reeldown rig`: the horizontal rig, its modes compared, and tests planned on it.
+
+use super::descend::{outcome_json, outcome_table, write_trace};
+use super::rig_arguments::{RigArguments, option};
+use super::{Ending, done};
+use crate::descent::driven::Drive;
+use crate::descent::{Outcome, OutcomeQuantity};
+use crate::error::{Error, Result};
+use crate::findings::rig::{self, PlanOptions, RigRun};
+use crate::physics::Parameter;
+use crate::render::{
+    Figure, rig_comparison_terminal, rig_figures, rig_mode_figures, rig_plan_terminal, table,
+};
+use crate::store::{read_number_columns, write_text};
+use crate::study::measured_run::Acceptance;
+use crate::study::{Limit, MeasuredRun, Study};
+use crate::units::{Quantity, System, engineering, format_engineering};
+use serde::Serialize;
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// Runs, compares or plans.
+pub(super) fn rig(arguments: &RigArguments) -> Result<Ending> {
+    let study = arguments.study.load(&[])?;
+    study.design.validate()?;
+    let proof_load_n = option("--proof-load", &arguments.proof_load, Quantity::Force)?;
+    if proof_load_n <= 0.0 {
+        return Err(Error::argument("--proof-load: a proof load is positive"));
+    }
+    let levels = levels(arguments)?;
+    if let Some(runs) = arguments.plan {
+        if let Some((drive, _)) = levels.iter().flatten().next() {
+            let name = drive.name();
+            return Err(Error::argument(format!("--{name}: --plan chooses its levels itself")));
+        }
+        return plan(arguments, &study, usize::from(runs), proof_load_n);
+    }
+    if arguments.compare {
+        return compare(arguments, &study, levels.map(|level| level.map(|(_, v)| v)), proof_load_n);
+    }
+    single(arguments, &study, levels, proof_load_n)
+}
+
+/// The levels that were given, by mode.
+fn levels(arguments: &RigArguments) -> Result<[Option<(Drive, f64)>; 3]> {
+    let given = [
+        (Drive::Force, "--force", &arguments.force, Quantity::Force),
+        (Drive::Speed, "--speed", &arguments.speed, Quantity::Speed),
+        (Drive::Power, "--power", &arguments.power, Quantity::Power),
+    ];
+    let mut levels = [None; 3];
+    for (place, (drive, name, text, quantity)) in levels.iter_mut().zip(given) {
+        if let Some(text) = text {
+            *place = Some((drive, option(name, text, quantity)?));
+        }
+    }
+    Ok(levels)
+}
+
+fn single(
+    arguments: &RigArguments,
+    study: &Study,
+    levels: [Option<(Drive, f64)>; 3],
+    proof_load_n: f64,
+) -> Result<Ending> {
+    let mut record = None;
+    let (title, run) = match (&arguments.recorded, levels.iter().flatten().collect::<Vec<_>>()) {
+        (Some(path), _) => {
+            let longest_step =
+                if arguments.gaps { f64::INFINITY } else { Acceptance::default().longest_step };
+            let measured =
+                MeasuredRun::load(path, Acceptance { longest_step }, read_number_columns)?;
+            let drive = arguments.by.map_or(measured.preferred_drive(), Drive::from);
+            let run = rig::recorded(&study.design, &measured, drive)?;
+            let title = format!("driven by the {} recorded in {}", drive.name(), path.display());
+            record = Some(measured);
+            (title, run)
+        }
+        (None, given) => match given.as_slice() {
+            [(drive, level)] => {
+                let quantity = match drive {
+                    Drive::Force => Quantity::Force,
+                    Drive::Speed => Quantity::Speed,
+                    Drive::Power => Quantity::Power,
+                };
+                let held = engineering(*level, quantity);
+                let run = rig::held(&study.design, *drive, *level)?;
+                (format!("constant {} of {held}", drive.name()), run)
+            }
+            [] => {
+                return Err(Error::argument(
+                    "what pulls? give one of --force \"6000 lbf\", --speed \"2.5 ft/s\", --power \"20 kW\", \
+                     --recorded FILE.csv, or --compare, or --plan",
+                ));
+            }
+            _ => {
+                return Err(Error::argument(
+                    "a truck holds one of --force, --speed and --power; --compare takes several",
+                ));
+            }
+        },
+    };
+    if let Some(path) = &arguments.trace {
+        write_trace(path, "horizontal rig, quasi-steady", &run.samples)?;
+    }
+    let limits = rig_limits(study);
+    if let Some(directory) = &arguments.figures {
+        let hottest = limits.first().map(|limit| limit.value);
+        write_figures(directory, &rig_figures(&run, record.as_ref(), proof_load_n, hottest))?;
+    }
+    if arguments.json {
+        let mut object = outcome_json(&run.outcome);
+        object.insert("energy_j".to_owned(), json!(run.energy_j()));
+        object.insert("departure_from_linear".to_owned(), json!(run.departure_from_linear()));
+        let peak = run.outcome.get(OutcomeQuantity::PeakTension);
+        object.insert("load_over_proof".to_owned(), json!(peak / proof_load_n));
+        if let Some(record) = &record {
+            object.insert("record_digest".to_owned(), json!(record.digest));
+            object.insert("residuals".to_owned(), json!(run.residuals));
+        }
+        return done(&format!("{:#}", Value::Object(object)));
+    }
+    // A pull is held against the fluid's limit; the others are the flight's.
+    let mut rigged = study.clone();
+    rigged.limits = limits;
+    let mut text = format!("{}: horizontal rig, {title}\n\n", study.title);
+    text += &outcome_table(&rigged, &Outcome { deployed: true, ..run.outcome });
+    if !run.outcome.deployed {
+        let out = run.samples.last().map_or(0.0, |sample| sample.line_m);
+        let length = study.design.get(Parameter::ReelLineLength);
+        let end = if record.is_some() { "record ends" } else { "run was given up after 1800 s," };
+        text += &format!(
+            "\nThe {end} before the line does: {} of {} are out.\n",
+            format_engineering(out, Quantity::Length, System::UsCustomary, 6),
+            format_engineering(length, Quantity::Length, System::UsCustomary, 6)
+        );
+    }
+    text += &in_words(&run, proof_load_n);
+    for (what, path) in [("course of the run", &arguments.trace), ("figures", &arguments.figures)] {
+        if let Some(path) = path {
+            text += &format!("\n{what}: {}\n", path.display());
+        }
+    }
+    done(&text)
+}
+
+/// The limits of a study that mean something on the rig: the fluid's.
+fn rig_limits(study: &Study) -> Vec<Limit> {
+    let of_fluid = |limit: &&Limit| limit.outcome == OutcomeQuantity::PeakFluidTemperature;
+    study.limits.iter().filter(of_fluid).cloned().collect()
+}
+
+/// Energy, load, linearity and residuals of a run.
+fn in_words(run: &RigRun, proof_load_n: f64) -> String {
+    let peak = run.outcome.get(OutcomeQuantity::PeakTension);
+    let over = if peak > proof_load_n { ": EXCEEDED" } else { "" };
+    let mut text = format!(
+        "\nenergy: {:.4} MJ\npeak load: {:.1} % of the proof load {}{over}\n",
+        run.energy_j() * 1e-6,
+        100.0 * peak / proof_load_n,
+        engineering(proof_load_n, Quantity::Force)
+    );
+    if let Some(departure) = run.departure_from_linear() {
+        text += &format!(
+            "fluid temperature strays from a straight line by {:.1} % of its rise, after the first tenth of \
+             the run\n",
+            100.0 * departure
+        );
+    }
+    if run.residuals.is_empty() {
+        return text;
+    }
+    let rows = run.residuals.iter().map(|residual| {
+        let shown = |value| format_engineering(value, residual.quantity(), System::UsCustomary, 4);
+        [
+            residual.channel.to_owned(),
+            if residual.drives { "drives".to_owned() } else { shown(residual.mean) },
+            if residual.drives { String::new() } else { shown(residual.root_mean_square) },
+            residual.readings.to_string(),
+        ]
+    });
+    let header = ["predicted − measured", "mean", "root mean square", "readings"];
+    text + &format!("\n{}\n", table(&header, 1..4, rows, None))
+}
+
+fn compare(
+    arguments: &RigArguments,
+    study: &Study,
+    levels: [Option<f64>; 3],
+    proof_load_n: f64,
+) -> Result<Ending> {
+    let instruments = arguments.instruments.instruments()?;
+    let found = rig::compare(study, proof_load_n, levels, &instruments)?;
+    if let Some(directory) = &arguments.figures {
+        write_figures(directory, &rig_mode_figures(&found))?;
+    }
+    if arguments.json {
+        return done(&as_json(&found)?);
+    }
+    let mut text = rig_comparison_terminal(&found);
+    if let Some(directory) = &arguments.figures {
+        text += &format!("\nfigures: {}\n", directory.display());
+    }
+    done(&text)
+}
+
+fn plan(arguments: &RigArguments, study: &Study, runs: usize, proof_load_n: f64) -> Result<Ending> {
+    let starts_k = arguments
+        .starts
+        .split(',')
+        .map(|text| option("--starts", text.trim(), Quantity::Temperature))
+        .collect::<Result<Vec<f64>>>()?;
+    if starts_k.len() > 8 {
+        return Err(Error::argument("--starts: at most eight temperatures can be planned with"));
+    }
+    let instruments = arguments.instruments.instruments()?;
+    let options = PlanOptions { runs, proof_load_n, starts_k, instruments };
+    let found = rig::plan(study, &options)?;
+    if arguments.json {
+        return done(&as_json(&found)?);
+    }
+    done(&rig_plan_terminal(&found))
+}
+
+fn as_json(finding: &impl Serialize) -> Result<String> {
+    serde_json::to_string_pretty(finding)
+        .map_err(|reason| Error::argument(format!("the result cannot be written: {reason}")))
+}
+
+fn write_figures(directory: &Path, figures: &[Figure]) -> Result<()> {
+    for figure in figures {
+        write_text(&directory.join(figure.file_name()), &figure.svg)?;
+    }
+    Ok(())
+}

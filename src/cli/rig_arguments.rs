@@ -1,0 +1,176 @@
+//! The options of `reeldown rig`.
+
+use super::arguments::StudyArguments;
+use crate::descent::driven::Drive;
+use crate::error::{Diagnostic, Error, Result};
+use crate::findings::rig::Instruments;
+use crate::units::{self, Quantity};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// What of a record drives the prediction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum DrivenBy {
+    /// The recorded force; speed is predicted
+    Force,
+    /// The recorded speed; force is predicted
+    Speed,
+}
+
+impl From<DrivenBy> for Drive {
+    fn from(by: DrivenBy) -> Drive {
+        match by {
+            DrivenBy::Force => Drive::Force,
+            DrivenBy::Speed => Drive::Speed,
+        }
+    }
+}
+
+/// A node that has a thermometer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Thermometer {
+    /// Fluid
+    Fluid,
+    /// Rotors and stators
+    Rotor,
+    /// Housing
+    Housing,
+    /// None at all
+    None,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RigArguments {
+    #[command(flatten)]
+    pub study: StudyArguments,
+    /// The truck holds a force: "6000 lbf". With --compare, that mode's level
+    #[arg(long, value_name = "FORCE")]
+    pub force: Option<String>,
+    /// The truck holds a speed: "2.5 ft/s". With --compare, that mode's level
+    #[arg(long, value_name = "SPEED")]
+    pub speed: Option<String>,
+    /// The truck holds a power: "20 kW". With --compare, that mode's level
+    #[arg(long, value_name = "POWER")]
+    pub power: Option<String>,
+    /// Drive the rig by a measured run: CSV with a header such as
+    /// "time [s], force [lbf], speed [ft/s], fluid [°F]", or Parquet in SI
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["force", "speed", "power", "compare", "plan"])]
+    pub recorded: Option<PathBuf>,
+    /// Which recorded column drives [default: force, if there is one]
+    #[arg(long, value_enum, requires = "recorded", value_name = "COLUMN")]
+    pub by: Option<DrivenBy>,
+    /// Take a record with gaps as it is, linear across them
+    #[arg(long, requires = "recorded")]
+    pub gaps: bool,
+    /// Compare constant force, speed and power as options for a test
+    #[arg(long, conflicts_with = "plan")]
+    pub compare: bool,
+    /// Find the best combinations of up to this many runs (1 to 4)
+    #[arg(long, value_name = "RUNS", num_args = 0..=1, default_missing_value = "4",
+          value_parser = clap::value_parser!(u8).range(1..=4))]
+    pub plan: Option<u8>,
+    /// Load that no planned or compared run may exceed
+    #[arg(long, value_name = "FORCE", default_value = "9000 lbf")]
+    pub proof_load: String,
+    /// Temperatures that a planned run can be started at, separated by commas
+    #[arg(long, value_name = "TEMPERATURES", default_value = "20 °F,60 °F,100 °F")]
+    pub starts: String,
+    #[command(flatten)]
+    pub instruments: InstrumentArguments,
+    /// Write the course of the run to a Parquet file
+    #[arg(long, value_name = "FILE.parquet", conflicts_with_all = ["compare", "plan"])]
+    pub trace: Option<PathBuf>,
+    /// Draw figures into a directory, as SVG
+    #[arg(long, value_name = "DIR", conflicts_with = "plan")]
+    pub figures: Option<PathBuf>,
+    /// Print the result as one JSON object in SI, and nothing else, on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What the instruments read, and how well, for --compare and --plan.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Instruments, for --compare and --plan")]
+pub(super) struct InstrumentArguments {
+    /// Time between readings
+    #[arg(long, value_name = "TIME", default_value = "1 s")]
+    pub every: String,
+    /// Random error of a force reading, standard deviation
+    #[arg(long, value_name = "FORCE", default_value = "50 lbf")]
+    pub force_error: String,
+    /// Systematic error of the load cell, as a share
+    #[arg(long, value_name = "SHARE", default_value = "1 %")]
+    pub force_gain: String,
+    /// Random error of a speed reading, standard deviation
+    #[arg(long, value_name = "SPEED", default_value = "0.05 ft/s")]
+    pub speed_error: String,
+    /// Systematic error of the speedometer, as a share
+    #[arg(long, value_name = "SHARE", default_value = "1 %")]
+    pub speed_gain: String,
+    /// Random error of a temperature reading, standard deviation
+    #[arg(long, value_name = "TEMPERATURE", default_value = "2 °F")]
+    pub temperature_error: String,
+    /// Systematic error of the thermometers
+    #[arg(long, value_name = "TEMPERATURE", default_value = "2 °F")]
+    pub temperature_offset: String,
+    /// Nodes that have a thermometer
+    #[arg(
+        long,
+        value_enum,
+        value_delimiter = ',',
+        value_name = "NODES",
+        default_value = "fluid,housing"
+    )]
+    pub thermometers: Vec<Thermometer>,
+}
+
+impl InstrumentArguments {
+    /// The instruments that are meant.
+    ///
+    /// # Errors
+    /// A value without sense, at its option.
+    pub fn instruments(&self) -> Result<Instruments> {
+        let difference = Quantity::TemperatureDifference;
+        let has = |node| self.thermometers.contains(&node);
+        if has(Thermometer::None) && self.thermometers.len() > 1 {
+            return Err(Error::argument("--thermometers: none goes with no other node"));
+        }
+        let found = Instruments {
+            every_s: option("--every", &self.every, Quantity::Time)?,
+            force_noise_n: option("--force-error", &self.force_error, Quantity::Force)?,
+            force_gain: option("--force-gain", &self.force_gain, Quantity::Number)?,
+            speed_noise_m_per_s: option("--speed-error", &self.speed_error, Quantity::Speed)?,
+            speed_gain: option("--speed-gain", &self.speed_gain, Quantity::Number)?,
+            temperature_noise_k: option(
+                "--temperature-error",
+                &self.temperature_error,
+                difference,
+            )?,
+            temperature_offset_k: option(
+                "--temperature-offset",
+                &self.temperature_offset,
+                difference,
+            )?,
+            thermometers: [Thermometer::Fluid, Thermometer::Rotor, Thermometer::Housing].map(has),
+        };
+        found.validate()?;
+        Ok(found)
+    }
+}
+
+/// The value of an option with its unit, SI.
+///
+/// # Errors
+/// A diagnostic at the option.
+pub(super) fn option(name: &str, text: &str, quantity: Quantity) -> Result<f64> {
+    units::parse(text, quantity).map_err(|error| {
+        Error::from(Diagnostic {
+            origin: name.to_owned(),
+            text: text.to_owned(),
+            span: error.span,
+            problem: error.problem,
+            expected: error.expected,
+            help: error.help,
+        })
+    })
+}

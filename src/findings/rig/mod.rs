@@ -1,0 +1,152 @@
+//! The horizontal rig: single runs, the paper's three modes as test options, and a plan of tests.
+
+mod band;
+pub mod information;
+pub mod plan;
+mod run;
+
+pub use band::{Band, HalfSpaces};
+pub use information::Instruments;
+pub use plan::{Candidate, Combination, PlanFinding, PlanOptions, plan};
+pub use run::{Residual, RigRun, held, recorded};
+
+use crate::descent::OutcomeQuantity;
+use crate::descent::driven::Drive;
+use crate::descent::reference;
+use crate::error::{Error, Result};
+use crate::physics::{Coefficients, Design};
+use crate::study::Study;
+use information::{Parameters, information, posterior};
+use plan::{Groups, flight_means, top_level};
+use run::cannot_compute;
+use serde::Serialize;
+
+/// Accuracy of the flight that runs are compared with.
+const TOLERANCE: f64 = 1e-8;
+/// Fine enough for means and figures, s.
+const LONGEST_STEP_S: f64 = 0.25;
+
+/// The flight of a design, as the rig is modelled: quasi-steady.
+///
+/// # Errors
+/// If it cannot be integrated.
+pub fn flight(design: &Design) -> Result<RigRun> {
+    let c = Coefficients::new(design);
+    let model = crate::descent::Model::QuasiSteady;
+    let run =
+        reference::trajectory(&c, model, TOLERANCE, LONGEST_STEP_S).map_err(cannot_compute)?;
+    Ok(RigRun { samples: run.samples, outcome: run.outcome, residuals: Vec::new() })
+}
+
+/// The three modes as options for a test.
+#[derive(Debug, Clone, Serialize)]
+pub struct Comparison {
+    /// Load that no run may exceed, N.
+    pub proof_load_n: f64,
+    /// The instruments.
+    pub instruments: Instruments,
+    /// The flight: force, speed and power on the mean over time, SI.
+    pub flight_means: [f64; 3],
+    /// Energy that the flight puts into the brake, J.
+    pub flight_energy_j: f64,
+    /// Highest fluid temperature of the flight, K.
+    pub flight_peak_fluid_k: f64,
+    /// The modes: constant force, speed, power.
+    pub modes: Vec<ModeFinding>,
+    /// Paths of the parameters; like ones as one, with how many; last, the brake constant.
+    pub parameters: Vec<(String, usize)>,
+}
+
+/// One mode as an option for a test.
+#[derive(Debug, Clone, Serialize)]
+pub struct ModeFinding {
+    /// What the truck holds.
+    pub mode: &'static str,
+    /// How much of it, SI.
+    pub level: f64,
+    /// Whether proof load or fluid forbid the flight's mean, which would be the level otherwise.
+    pub reduced: bool,
+    /// Length of the run, s.
+    pub duration_s: f64,
+    /// Highest load, N, and the time it is reached, s.
+    pub peak_force_n: f64,
+    /// See `peak_force_n`.
+    pub peak_force_time_s: f64,
+    /// Highest load over the proof load.
+    pub load_over_proof: f64,
+    /// Energy put into the brake, J.
+    pub energy_j: f64,
+    /// The same over the flight's.
+    pub energy_over_flight: f64,
+    /// Highest fluid temperature, K.
+    pub peak_fluid_k: f64,
+    /// Largest departure of the fluid's temperature from a straight line, over its rise, after the first
+    /// tenth of the run.
+    pub departure_from_linear: Option<f64>,
+    /// Standard deviation of each parameter after one such run over before.
+    pub remaining: Vec<f64>,
+    /// The run.
+    #[serde(skip)]
+    pub run: RigRun,
+}
+
+/// Compares the modes, each at the flight's mean or, where proof load or fluid forbid that, at the greatest
+/// level that they allow; a level that is given is taken as it is.
+///
+/// # Errors
+/// If a run or the flight cannot be computed, or the instruments' errors are impossible.
+pub fn compare(
+    study: &Study,
+    proof_load_n: f64,
+    levels: [Option<f64>; 3],
+    instruments: &Instruments,
+) -> Result<Comparison> {
+    instruments.validate()?;
+    let design = &study.design;
+    let flown = flight(design)?;
+    let means = flight_means(design)?;
+    let parameters = Parameters::new(study);
+    let groups = Groups::new(study, &parameters);
+    let energy = flown.energy_j();
+    let start_k = design.get(crate::physics::Parameter::InitialTemperature);
+    let mut modes = Vec::new();
+    for (k, drive) in Drive::ALL.into_iter().enumerate() {
+        let (level, run) = match levels[k] {
+            Some(level) => (level, held(design, drive, level)?),
+            None => top_level(study, design, drive, means[k], proof_load_n).ok_or_else(|| {
+                Error::argument(format!(
+                    "no constant {} keeps the proof load and the fluid's limit: give a level",
+                    drive.name()
+                ))
+            })?,
+        };
+        let duration_s = run.outcome.get(OutcomeQuantity::Time);
+        let matrix = information(&parameters, instruments, start_k, drive, level, duration_s)?;
+        let covariance = posterior(parameters.count(), &[&matrix]);
+        let (peak_force_n, peak_force_time_s) = run.peak(|s| s.observation[1]);
+        modes.push(ModeFinding {
+            mode: drive.name(),
+            level,
+            reduced: levels[k].is_none() && level < means[k],
+            duration_s,
+            peak_force_n,
+            peak_force_time_s,
+            load_over_proof: peak_force_n / proof_load_n,
+            energy_j: run.energy_j(),
+            energy_over_flight: run.energy_j() / energy,
+            peak_fluid_k: run.outcome.get(OutcomeQuantity::PeakFluidTemperature),
+            departure_from_linear: run.departure_from_linear(),
+            remaining: groups.remaining(&covariance),
+            run,
+        });
+    }
+    Ok(Comparison {
+        proof_load_n,
+        instruments: instruments.clone(),
+        flight_means: means,
+        flight_energy_j: energy,
+        flight_peak_fluid_k: flown.outcome.get(OutcomeQuantity::PeakFluidTemperature),
+        modes,
+        parameters: groups.names,
+    })
+}

@@ -1,0 +1,149 @@
+//! The page that puts each of the paper's figures beside what the paper says of it.
+
+use super::figures::{Figure, paper_figures, rig_mode_figures, starting_temperature_figure};
+use super::figures_of_speech::value;
+use crate::findings::paper::{PaperFinding, Statement};
+use crate::units::Quantity;
+
+/// The page and the figures beside it.
+#[derive(Debug, Clone)]
+pub struct PaperPage {
+    /// Markdown; figures are linked in the directory `figures`.
+    pub markdown: String,
+    /// The figures.
+    pub figures: Vec<Figure>,
+}
+
+/// What a statement comes to.
+fn verdict(statement: &Statement) -> &'static str {
+    if statement.agrees { "pass" } else { "**FAIL**" }
+}
+
+/// The page of a finding; `design` says what was computed, `command` makes it again.
+pub fn paper_page(finding: &PaperFinding, design: &str, command: &str) -> PaperPage {
+    let figures: Vec<Figure> = paper_figures(&finding.runs)
+        .into_iter()
+        .chain(starting_temperature_figure(&finding.family))
+        .chain(rig_mode_figures(&finding.modes))
+        .collect();
+    let statements = &finding.statements;
+    let passed = statements.iter().filter(|s| s.agrees).count();
+    let mut text = format!(
+        "# The paper's figures, drawn again\n\n\
+         G. Jumper, *Improved Viscous Brake Design Using Simulation*, describes a brake that reels a payload \
+         down 500 ft below a balloon, and shows the course of a run in Figures 4 to 10 and, in words, that of a \
+         test on the ground in three modes. Does this program show the same?\n\n\
+         **{passed} of {} statements agree; {} {}.**\n\n",
+        statements.len(),
+        statements.len() - passed,
+        if statements.len() - passed == 1 { "does not" } else { "do not" },
+    );
+    text +=
+        "| where | the paper says (in our words) | here | verdict |\n| --- | --- | --- | --- |\n";
+    for statement in statements {
+        text += &format!(
+            "| {} | {} | {} | {} |\n",
+            link(statement, &figures),
+            statement.says,
+            statement.found,
+            verdict(statement)
+        );
+    }
+    for statement in statements.iter().filter(|s| !s.agrees) {
+        let remark = statement.remark.as_deref().unwrap_or("no reason is known");
+        text += &format!("\n**{}, {}:** {remark}.\n", statement.place, statement.says);
+    }
+    text += "\nPassed with a reservation:\n\n";
+    for statement in statements.iter().filter(|s| s.agrees) {
+        if let Some(remark) = &statement.remark {
+            text += &format!("- **{}**, {}: {remark}.\n", statement.place, statement.says);
+        }
+    }
+    text += &format!(
+        "\nWhat was computed: {design} Curves are the quasi-steady solution, as the paper's are, but for the \
+         dynamic one in Fig. 4. The paper's own curves are not at hand as numbers: each verdict is on what its \
+         text says, and is computed from the data, not judged by eye.\n"
+    );
+    for figure in figures.iter().filter(|figure| figure.name.starts_with("figure-")) {
+        let place = place(figure);
+        text += &section(figure, statements.iter().filter(|s| s.place == place));
+    }
+    text += &format!(
+        "\n## The horizontal rig\n\nThree ways to pull the line with a truck. Each is held at the flight's mean \
+         or, where the load or the fluid's temperature would exceed what is allowed, at the greatest level that \
+         keeps the proof load of {} (assumed; the paper gives none) and the fluid's limit.\n\n",
+        value(finding.modes.proof_load_n, Quantity::Force)
+    );
+    text += &told(statements.iter().filter(|s| s.place.starts_with("rig")));
+    for figure in figures.iter().filter(|figure| figure.name.starts_with("rig-")) {
+        text += &format!("\n### {}\n\n{}", figure.title, picture(figure));
+    }
+    text += &format!("\n## Made by\n\n```\n{command}\n```\n");
+    PaperPage { markdown: text, figures }
+}
+
+/// The place in the paper that a figure redraws: "Fig. 5" of `figure-5-torque`.
+fn place(figure: &Figure) -> String {
+    let number = figure.name.split('-').nth(1).unwrap_or("");
+    format!("Fig. {number}")
+}
+
+/// A statement's place as a link to its figure's heading on the page.
+fn link(statement: &Statement, figures: &[Figure]) -> String {
+    let found = figures
+        .iter()
+        .find(|figure| figure.name.starts_with("figure-") && place(figure) == statement.place);
+    match found {
+        Some(figure) => format!("[{}](#{})", statement.place, anchor(&figure.title)),
+        None if statement.place.starts_with("rig") => {
+            format!("[{}](#the-horizontal-rig)", statement.place)
+        }
+        None => statement.place.to_owned(),
+    }
+}
+
+/// The anchor that forges give a heading: lower case, blanks as hyphens, other marks dropped.
+fn anchor(title: &str) -> String {
+    let kept = title.to_lowercase();
+    kept.chars()
+        .filter(|c| c.is_alphanumeric() || *c == ' ' || *c == '-')
+        .map(|c| if c == ' ' { '-' } else { c })
+        .collect()
+}
+
+fn picture(figure: &Figure) -> String {
+    format!(
+        "![{}](figures/{})\n\n{}\n",
+        figure.alternative.replace(['[', ']'], ""),
+        figure.file_name(),
+        figure.caption
+    )
+}
+
+/// Statements as a list with their verdicts and remarks.
+fn told<'a>(statements: impl Iterator<Item = &'a Statement>) -> String {
+    let mut text = String::new();
+    for statement in statements {
+        text += &format!(
+            "- **The paper:** {}. **Here:** {}. Verdict: {}.\n",
+            statement.says,
+            statement.found,
+            verdict(statement)
+        );
+    }
+    text
+}
+
+fn section<'a>(figure: &Figure, statements: impl Iterator<Item = &'a Statement>) -> String {
+    format!("\n## {}\n\n{}\n{}", figure.title, picture(figure), told(statements))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn analytic_anchors_of_headings() {
+        assert_eq!(anchor("Figure 5: brake torque"), "figure-5-brake-torque");
+    }
+}
