@@ -2,7 +2,8 @@
 
 use super::Figure;
 use super::axis::Axis;
-use super::chart::{BLUE, Chart, HEIGHT, INK, Swatch, VERMILLION};
+use super::chart::{BLUE, Chart, HEIGHT, INK, VERMILLION};
+use super::key::Swatch;
 use crate::findings::calibration::{CalibrationFinding, CheckFinding};
 use crate::units::{Quantity, display, number};
 

@@ -38,7 +38,6 @@ mod trade;
 use crate::findings::Findings;
 
 pub use calibration::calibration_figures;
-pub use paper::paper_figures;
 pub use paper::{paper_figures, starting_temperature_figure};
 pub use rig::{rig_figures, rig_mode_figures};
 pub use sweep::sweep_figures;
