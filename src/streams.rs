@@ -43,6 +43,14 @@ pub enum Purpose {
     Known,
     /// Random orders and points of the Shapley effects.
     Shapley,
+    /// Sets of values of what is not known.
+    Unknown,
+    /// What varies, with each set.
+    Varying,
+    /// Pick-freeze sets of what is not known.
+    UnknownShares,
+    /// What varies, with each pick-freeze set.
+    VaryingShares,
     /// Trajectories of a screening.
     Screening,
     /// Draws of a posterior.
@@ -73,6 +81,10 @@ impl Purpose {
             Purpose::Confirmation => b"confirmn",
             Purpose::Known => b"knownval",
             Purpose::Shapley => b"shapley ",
+            Purpose::Unknown => b"unknownv",
+            Purpose::Varying => b"varyingv",
+            Purpose::UnknownShares => b"unknshar",
+            Purpose::VaryingShares => b"varyshar",
             Purpose::Screening => b"screenng",
             Purpose::Calibration => b"calibrat",
             Purpose::Synthetic => b"syntheti",

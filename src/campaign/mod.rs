@@ -5,8 +5,10 @@
 //! order of the samples, so that nothing depends on the number of threads.
 
 mod breaches;
+pub mod calibrated;
 pub mod calibration;
 pub mod common_numbers;
+pub mod epistemic;
 mod evaluate;
 pub mod given_sample;
 pub mod known;

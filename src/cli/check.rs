@@ -16,17 +16,17 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<Ending> {
     }
     let mut text = format!("{}\n{}: valid\n\n", study.title, study.origin);
     let rows = study.resolved().into_iter().map(|row| {
-        let (law, known, source) = match row.uncertain {
+        let (law, nature, known, source) = match row.uncertain {
             Some(law) => {
                 let each =
                     if law.inputs > 1 { format!(" (×{})", law.inputs) } else { String::new() };
-                (format!("{}{each}", law.law), law.known.name(), law.source)
+                (format!("{}{each}", law.law), law.nature.name(), law.known.name(), law.source)
             }
-            None => ("–".to_owned(), "–", row.source),
+            None => ("–".to_owned(), "–", "–", row.source),
         };
-        [row.path, row.text, law, known.to_owned(), source]
+        [row.path, row.text, law, nature.to_owned(), known.to_owned(), source]
     });
-    let header = ["input", "nominal", "law", "known", "source"];
+    let header = ["input", "nominal", "law", "nature", "known", "source"];
     text += &format!("{}\n\n", table(&header, 0..0, rows, None));
     for limit in &study.limits {
         text += &format!("limit: {} {} {}\n", limit.outcome.name(), limit.kind.name(), limit.text);
@@ -77,6 +77,7 @@ fn json(study: &Study) -> serde_json::Value {
                     "standard_deviation": law.sd,
                     "inputs": law.inputs,
                     "known": law.known.name(),
+                    "nature": law.nature.name(),
                     "source": law.source,
                 })),
             })

@@ -3,7 +3,9 @@
 use crate::error::{Error, Result};
 use crate::sampling::Design;
 use crate::store::{PARQUET, Parentage};
-use crate::study::{Files, NamedText, Override, SampleFile, Study, assemble};
+use crate::study::{
+    EpistemicPlan, Files, NamedText, Nature, Override, SampleFile, Study, assemble,
+};
 use std::collections::{BTreeMap, VecDeque};
 use std::path::Path;
 
@@ -44,9 +46,10 @@ pub(super) fn of(study: &Study) -> Parentage {
 }
 
 /// The digest of everything that fixes a row of the table: the resolved study without its requirement,
-/// its stopping rule, its sensitivity, reliability, trade and tightening plans, what its inputs cost, when they are
-/// known and how they are grouped, and, for a design whose longer run begins with the shorter, without its number
-/// of samples.
+/// The digest of everything that fixes a row of the table: the resolved study without its requirement,
+/// its stopping rule, its sensitivity, reliability, trade, tightening and epistemic plans, what its inputs cost, when
+/// they are known, how they are grouped and what is unknown, and, for a design whose longer run begins with the
+/// shorter, without its number of samples.
 pub(super) fn row_digest(study: &Study) -> String {
     let mut rows = study.clone();
     rows.requirement = None;
@@ -58,11 +61,13 @@ pub(super) fn row_digest(study: &Study) -> String {
     rows.tighten.target = None;
     rows.tighten.samples = 0;
     rows.tighten.design.clear();
+    rows.epistemic = EpistemicPlan { outer: 0, inner: 0 };
     for input in &mut rows.inputs {
         input.cost = Default::default();
         // When it becomes known, and with what it is looked at, moves no sample.
         input.known = crate::study::Known::Never;
         input.group = None;
+        input.nature = Nature::Unknown;
     }
     rows.sampling.stopping = None;
     if rows.sampling.design != Design::LatinHypercube {

@@ -85,12 +85,13 @@ impl Run<'_> {
         if progress.stopping() {
             return Ok(self.interrupted(samples, true));
         }
-        let (given, screening, shapley, trade, known) = {
+        let (given, screening, shapley, trade, known, epistemic) = {
             let descents = campaign::shapley::shapley_descents(self.study)
                 + campaign::given_sample::given_descents(self.study)
                 + campaign::screening::screening_descents(self.study)
                 + campaign::trade::trade_descents(self.study)
-                + campaign::known::known_descents(self.study);
+                + campaign::known::known_descents(self.study)
+                + campaign::epistemic::epistemic_descents(self.study);
             let _watch = Watch::start(&progress, descents, "trade of tolerances");
             (
                 campaign::given_sample::run_given(self.study, &record, &progress),
@@ -98,8 +99,13 @@ impl Run<'_> {
                 campaign::shapley::run_shapley(self.study, &progress),
                 campaign::trade::run_trade(self.study, &record, &progress),
                 campaign::known::run_known(self.study, &progress),
+                campaign::epistemic::run_epistemic(self.study, &progress),
             )
         };
+        if progress.stopping() {
+            return Ok(self.interrupted(samples, true));
+        }
+        let calibrated = campaign::calibrated::run_calibrated(self.study, &record, &progress)?;
         if progress.stopping() {
             return Ok(self.interrupted(samples, true));
         }
@@ -117,6 +123,8 @@ impl Run<'_> {
             slopes: campaign::screening::slopes(self.study),
             trade: or_reason(trade, NO_TRADE),
             known: or_reason(known, NO_TRADE),
+            calibrated,
+            epistemic: or_reason(epistemic, NO_EPISTEMIC),
             command: self.command(),
         })?;
         self.write(&findings)?;
@@ -315,6 +323,9 @@ impl Rows {
 const NO_SENSITIVITY: &str = "the study asks for none (sensitivity.base_samples = 0)";
 /// Why there is no trade of tolerances where a study has none.
 const NO_TRADE: &str = "the study asks for none (trade.samples = 0) or states no limit";
+
+/// Why what is not known is not told apart where a study asks for none.
+const NO_EPISTEMIC: &str = "the study asks for none (epistemic.outer = 0) or states no limit";
 
 /// What was computed, or why it was not.
 fn or_reason<T>(found: Result<Option<T>>, none: &str) -> std::result::Result<T, String> {

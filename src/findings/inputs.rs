@@ -22,6 +22,8 @@ pub struct InputFinding {
     pub standard_deviation: f64,
     /// When its value becomes known.
     pub known: &'static str,
+    /// Whether it varies from flight to flight or is fixed and not known.
+    pub nature: &'static str,
     /// Where the law comes from.
     pub source: String,
 }
@@ -42,6 +44,7 @@ pub(super) fn inputs(study: &Study) -> Vec<InputFinding> {
                 mean: law.mean,
                 standard_deviation: law.sd,
                 known: law.known.name(),
+                nature: law.nature.name(),
                 source: law.source,
             })
         })

@@ -1,6 +1,7 @@
 //! Everything a report says, computed once, as one tree that serialises: what the Markdown shows, the
 //! JSON holds. Numbers are SI; the renderer chooses units.
 
+pub mod calibrated;
 pub mod calibration;
 pub mod compare;
 mod compare_findings;
@@ -9,6 +10,7 @@ mod demonstration;
 pub mod derivatives;
 pub mod design_value;
 mod drivers;
+pub mod epistemic;
 mod figures;
 mod inputs;
 pub mod known;
@@ -26,6 +28,8 @@ pub mod sweep_best;
 pub mod tighten;
 pub mod trade;
 
+use crate::campaign::calibrated::CalibratedOutcomes;
+use crate::campaign::epistemic::EpistemicOutcomes;
 use crate::campaign::given_sample::GivenSample;
 use crate::campaign::known::KnownOutcomes;
 use crate::campaign::screening::{ScreeningOutcomes, Slopes};
@@ -39,8 +43,10 @@ use crate::study::Study;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
+pub use calibrated::{CalibratedEvent, CalibratedFinding, MovedInput};
 pub use demonstration::{Decision, VerdictFinding, VerdictWord};
 pub use drivers::{DriverOutput, DriversFinding, FactorFinding, PairFinding};
+pub use epistemic::{EpistemicEvent, EpistemicFinding, ProbabilityBox, UnknownShare};
 pub use figures::{
     Checkpoint, ConstantTemperature, Convergence, Distribution, Exceedance, Fan, FanBand,
     FigureData, Interaction, InteractionInput, PaperRuns, paper_runs,
@@ -90,6 +96,10 @@ pub struct Findings {
     pub trade: TradeFinding,
     /// What becomes known when, and what that settles.
     pub known: KnownFinding,
+    /// What a calibration changed, if a card of the study is a calibrated one.
+    pub calibrated: Option<CalibratedFinding>,
+    /// What varies from flight to flight, and what is not known.
+    pub epistemic: EpistemicFinding,
     /// Samples that did not deploy or could not be computed.
     pub exceptions: ExceptionFinding,
     /// What is uncertain.
@@ -210,6 +220,10 @@ pub struct Evidence<'a> {
     pub trade: std::result::Result<TradeOutcomes<'a>, String>,
     /// What becomes known when, or why that is not told.
     pub known: std::result::Result<KnownOutcomes, String>,
+    /// The study under the cards of the prior, if a card of it is a calibrated one.
+    pub calibrated: Option<CalibratedOutcomes>,
+    /// Its nested descents, or why there are none.
+    pub epistemic: std::result::Result<EpistemicOutcomes, String>,
     /// The command that was given, to be given again.
     pub command: String,
 }
@@ -226,6 +240,7 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
     let sampler = campaign::sampler(&drawn)?;
     let drivers = drivers::drivers(study, &evidence.pick_freeze)?;
     let shapley = shapley::shapley(study, &evidence.shapley)?;
+    let epistemic = epistemic::epistemic(study, &evidence.epistemic)?;
     Ok(Findings {
         format: 1,
         title: study.title.clone(),
@@ -249,6 +264,8 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
         shapley,
         trade: trade::trade(study, &evidence.trade)?,
         known: known::known(study, &evidence.known)?,
+        calibrated: calibrated::calibrated(study, evidence.calibrated.as_ref(), &epistemic)?,
+        epistemic,
         exceptions: exceptions(record),
         inputs: inputs::inputs(study),
         numerical: numerical::numerical(study, record, &evidence.verification),

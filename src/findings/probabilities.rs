@@ -9,7 +9,7 @@ use crate::numerics::interval::Earned;
 use crate::reliability::breach_counts::BreachCounts;
 use crate::reliability::probability::Proportion;
 use crate::reliability::replicates::from_replicate_counts;
-use crate::study::Study;
+use crate::study::{Limit, LimitKind, Study};
 use serde::Serialize;
 
 /// Fewer breaches than this are stated as an upper bound.
@@ -50,18 +50,20 @@ pub struct ProbabilityFinding {
     pub statement: Option<String>,
 }
 
+/// A breach of a limit in words.
+pub(super) fn title_of(limit: &Limit) -> String {
+    let side = match limit.kind {
+        LimitKind::Max => "above",
+        LimitKind::Min => "below",
+    };
+    format!("{} {side} {}", limit.outcome.title(), limit.text)
+}
+
 /// Every event of a study: each limit, any of them, each pair.
 pub(super) fn probabilities(study: &Study, record: &Record) -> Result<Vec<ProbabilityFinding>> {
     let mut found = Vec::new();
     let count = study.limits.len();
-    let title = |i: usize| {
-        let limit = &study.limits[i];
-        let side = match limit.kind {
-            crate::study::LimitKind::Max => "above",
-            crate::study::LimitKind::Min => "below",
-        };
-        format!("{} {side} {}", limit.outcome.title(), limit.text)
-    };
+    let title = |i: usize| title_of(&study.limits[i]);
     let name = |i: usize| study.limits[i].name();
     for i in 0..count {
         let event = |c: &BreachCounts| c.constraint(i);

@@ -155,7 +155,7 @@ pub(super) fn trade(
 /// Statistics of breaches at points that are independent, or belong to replicates in turn.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Paired {
-    replicates: usize,
+    pub(super) replicates: usize,
 }
 
 impl Paired {

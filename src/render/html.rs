@@ -32,6 +32,7 @@ pub(super) struct Sections {
     drivers: Vec<Shown>,
     trade: Vec<Shown>,
     known: Vec<Shown>,
+    epistemic: Vec<Shown>,
     descents: Vec<Shown>,
 }
 
@@ -62,6 +63,7 @@ impl Sections {
             drivers: shown(&figures.drivers),
             trade: shown(&figures.trade),
             known: shown(&figures.known),
+            epistemic: shown(&figures.epistemic),
             descents: shown(&figures.descents),
         }
     }

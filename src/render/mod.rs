@@ -1,8 +1,10 @@
 //! Findings as text and figures: a terminal summary, a Markdown and an HTML report, SVG. Returns strings; writes and prints nothing.
 
+mod calibrated_view;
 mod calibration;
 mod compare;
 mod driver_view;
+mod epistemic_view;
 mod figures;
 mod figures_of_speech;
 mod html;

@@ -80,6 +80,18 @@ pub fn terminal(findings: &Findings, style: Style) -> String {
             text += &format!("{}\n", wrapped(&line.replace('`', "")));
         }
     }
+    if let Some(calibrated) = &view.calibrated {
+        text.push('\n');
+        for line in &calibrated.headlines {
+            text += &format!("{}\n", wrapped(&line.replace('`', "")));
+        }
+    }
+    if !view.epistemic.headlines.is_empty() {
+        text.push('\n');
+        for line in &view.epistemic.headlines {
+            text += &format!("{}\n", wrapped(&line.replace('`', "")));
+        }
+    }
     if findings.exceptions.not_deployed + findings.exceptions.faulted > 0 {
         for line in &view.exceptions {
             text += &format!("{}\n", wrapped(line));

@@ -110,7 +110,7 @@ pub(super) fn percent(estimate: &Estimate) -> String {
 }
 
 /// A difference of probabilities in percentage points, with its interval.
-fn points(estimate: &Estimate) -> String {
+pub(super) fn points(estimate: &Estimate) -> String {
     let shown = |x: f64| {
         let text = number(100.0 * x, 3);
         if x > 0.0 { format!("+{text}") } else { text.replace('-', "−") }

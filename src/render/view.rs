@@ -1,6 +1,8 @@
 //! The findings in a reader's words and units: what every textual rendering is laid out from.
 
+use super::calibrated_view::{Calibrated, calibrated};
 use super::driver_view::{Drivers, drivers, ranked};
+use super::epistemic_view::{Epistemic, epistemic};
 use super::figures_of_speech::{
     bare, count, maybe, probability, probability_interval, upper_end, value, value_interval,
 };
@@ -34,6 +36,8 @@ pub(super) struct View {
     pub measures: Measures,
     pub trade: Trade,
     pub known: Known,
+    pub epistemic: Epistemic,
+    pub calibrated: Option<Calibrated>,
     pub nominal: String,
     pub outcomes: Vec<OutcomeRow>,
     pub exceptions: Vec<String>,
@@ -114,6 +118,7 @@ pub(super) struct InputRow {
     pub law: String,
     pub inputs: usize,
     pub known: &'static str,
+    pub nature: &'static str,
     pub source: String,
 }
 
@@ -162,6 +167,8 @@ pub(super) fn view(findings: &Findings) -> View {
         measures: measures(&findings.measures),
         trade: trade(&findings.trade),
         known: known(&findings.known),
+        epistemic: epistemic(&findings.epistemic),
+        calibrated: findings.calibrated.as_ref().map(calibrated),
         nominal: nominal(findings),
         outcomes: findings.outcomes.iter().map(|o| outcome_row(findings, o)).collect(),
         exceptions: exceptions(findings),
@@ -174,6 +181,7 @@ pub(super) fn view(findings: &Findings) -> View {
                 law: input.law.clone(),
                 inputs: input.inputs,
                 known: input.known,
+                nature: input.nature,
                 source: input.source.clone(),
             })
             .collect(),

@@ -6,7 +6,8 @@ use super::overrides::{Destination, Override, in_place_of, put};
 use super::place::Text;
 use super::together::{self, SampleFile, Together};
 use super::{
-    DrawnTogether, Input, Stated, Study, correlation, inputs, pairs, read, sections, tighten,
+    DrawnTogether, Input, Stated, Study, correlation, epistemic, inputs, pairs, read, sections,
+    tighten,
 };
 use crate::descent::Model;
 use crate::error::{Error, Result};
@@ -62,6 +63,16 @@ pub trait Files {
 /// # Errors
 /// A [`crate::error::Diagnostic`] for every mistake in a text.
 pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files) -> Result<Study> {
+    assemble_with(study, overrides, files, None)
+}
+
+/// As [`assemble`], with these cards in place of those that the study names.
+fn assemble_with(
+    study: &NamedText,
+    overrides: &[Override],
+    files: &mut dyn Files,
+    given: Option<&[NamedText]>,
+) -> Result<Study> {
     let text = Arc::new(Text { origin: study.origin.clone(), text: study.text.clone() });
     let mut document = document::parse(&text)?;
     let (design_overrides, card_overrides) = apply(overrides, &mut document)?;
@@ -92,13 +103,17 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
     let reliability = sections::reliability(find("reliability"))?;
     let trade = tighten::trade(find("trade"))?;
     let tighten = tighten::tighten(find("tighten"), &design)?;
+    let epistemic = epistemic::epistemic(find("epistemic"))?;
     if let (Some(node), true) = (find("requirement"), limits.is_empty()) {
         let expected = "expected at least one limit, such as [limits] time = { max = \"210 s\" }";
         return Err(node.place.error("a requirement without limits says nothing", expected));
     }
     let card_node = find("card")
         .ok_or_else(|| missing("card", "card = \"…\": the file that says what is uncertain"))?;
-    let card_texts = card_texts(card_node, overrides, files)?;
+    let card_texts = match given {
+        Some(texts) => texts.to_vec(),
+        None => card_texts(card_node, overrides, files)?,
+    };
     let mut cards = Vec::new();
     for card in &card_texts {
         let text = Arc::new(Text { origin: card.origin.clone(), text: card.text.clone() });
@@ -106,6 +121,13 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
         card.together = together::read(&card, files)?;
         cards.push(card);
     }
+    let calibrated = cards.iter().skip(1).position(|card| card.calibrated_from.is_some());
+    let calibrated_from =
+        calibrated.and_then(|k| cards.get(k + 1)).and_then(|card| card.calibrated_from.clone());
+    let prior_cards = calibrated.and_then(|k| card_texts.get(..=k));
+    // What the cards before it say may not be a study of its own: there is then no prior to tell of.
+    let prior = prior_cards
+        .and_then(|cards| assemble_with(study, overrides, files, Some(cards)).ok().map(Box::new));
     let mut card = card::merge(cards);
     for (statement, path, key) in card_overrides {
         if let Some(target) = card::parameter_path(&path) {
@@ -121,6 +143,7 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
     let (joint, correlations) = correlation::joint(&inputs, samples, &card.correlations)?;
     let mut notes = notes(&design, &inputs, &stated);
     notes.extend(card.together.iter().filter_map(unused));
+    notes.extend(epistemic::shared_readings(&inputs));
     Ok(Study {
         title,
         model,
@@ -137,6 +160,9 @@ pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files
         reliability,
         trade,
         tighten,
+        calibrated_from,
+        prior,
+        epistemic,
         stated,
         notes,
         origin: study.origin.clone(),

@@ -22,6 +22,8 @@ pub(super) struct Statement {
 pub(super) struct Card {
     pub statements: Vec<Statement>,
     pub correlations: Vec<Node>,
+    /// What a calibrated card was made from.
+    pub calibrated_from: Option<String>,
     /// The `[[joint]]` statements.
     pub joints: Vec<Node>,
     /// What the `[[joint]]` statements draw, once their files are read.
@@ -49,6 +51,10 @@ pub(super) fn read_card(document: &Node) -> Result<Card> {
         match key.name.as_str() {
             "title" | "description" => {
                 read::string(node, "a text")?;
+            }
+            "calibrated_from" => {
+                let what = "what the card was calibrated from";
+                card.calibrated_from = Some(read::string(node, what)?.trim().to_owned());
             }
             "correlation" => card.correlations.extend_from_slice(statements(key, node)?),
             "joint" => card.joints.extend_from_slice(statements(key, node)?),

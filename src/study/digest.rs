@@ -37,6 +37,7 @@ impl Study {
                 input.known.name(),
                 input.group.as_deref().unwrap_or("")
             ));
+            lines.push(format!("nature {} {}", input.target.path(), input.nature.name()));
             if let Some(cost) = cost_text(&input.cost) {
                 lines.push(format!("cost {} {cost}", input.target.path()));
             }
@@ -97,6 +98,8 @@ impl Study {
             let path = range.target.path();
             lines.push(format!("tighten design {path} {:e} {:e}", range.lower, range.upper));
         }
+        let plan = self.epistemic;
+        lines.push(format!("epistemic outer={} inner={}", plan.outer, plan.inner));
         lines.push(String::new());
         lines.join("\n")
     }

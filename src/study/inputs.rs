@@ -2,12 +2,13 @@
 
 use super::card::{Card, Statement};
 use super::digest::of_numbers;
+use super::document::Node;
 use super::empirical::ColumnReader;
 use super::law::understand;
 use super::read;
 use super::sections::check_surface;
 use super::together::Together;
-use super::{Input, Known, TighteningCost, tighten};
+use super::{Input, Known, Nature, TighteningCost, tighten};
 use crate::error::Result;
 use crate::physics::design::{Design, Target};
 use crate::physics::parameters::Parameter;
@@ -63,12 +64,18 @@ fn member(together: &Together, target: Target, values: &[f64]) -> Result<Input> 
         marginal: Marginal::untruncated(law),
         readings: None,
         known: together.known,
+        nature: together.nature,
         source: together.source.clone(),
         group: Some(together.group.clone()),
         cost: together.cost.clone(),
         law_text: together.law_text(),
         law_canonical: format!("together values={}", of_numbers(values)),
     })
+}
+
+/// Whether an input varies or is unknown.
+pub(super) fn nature(node: &Node) -> Result<Nature> {
+    read::choice(node, "nature", &Nature::ALL.map(Nature::name), Nature::from_name)
 }
 
 /// One statement as an input, and whether it stands for one on each surface.
@@ -100,6 +107,10 @@ fn input(statement: &Statement, columns: ColumnReader<'_>) -> Result<(Input, boo
     let known_names = Known::ALL.map(Known::name);
     let known_node = require("known", "known = \"at build\", \"on the day\" or \"never\"")?;
     let known = read::choice(known_node, "time of knowledge", &known_names, Known::from_name)?;
+    let nature = match find("nature") {
+        Some((_, node)) => nature(node)?,
+        None => Nature::default_of(known, law.readings.is_some()),
+    };
     let source_node = require("source", "source = \"…\": where the distribution comes from")?;
     let source = read::string(source_node, "where the distribution comes from")?.trim().to_owned();
     let group = match find("group") {
@@ -113,6 +124,7 @@ fn input(statement: &Statement, columns: ColumnReader<'_>) -> Result<(Input, boo
         marginal: law.marginal,
         readings: law.readings,
         known,
+        nature,
         source,
         group,
         cost,

@@ -111,7 +111,7 @@ fn check_keys(statement: &Statement, entries: &Table, info: &LawInfo) -> Result<
     let ends =
         if info.bounded { ["truncation_lower", "truncation_upper"] } else { ["lower", "upper"] };
     names.extend(ends);
-    names.extend(["law", "known", "source", "group", "cost"]);
+    names.extend(["law", "known", "nature", "source", "group", "cost"]);
     let is_gap = statement.target == Target::whole(Parameter::BrakeGap);
     for (key, _) in entries {
         let name = key.name.as_str();

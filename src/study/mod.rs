@@ -10,6 +10,7 @@ mod correlation;
 mod digest;
 mod document;
 mod empirical;
+mod epistemic;
 mod inputs;
 mod law;
 mod laws;
@@ -35,6 +36,7 @@ use crate::uncertainty::{Joint, Marginal, Measure, Readings};
 
 pub use assemble::{Files, NamedText, assemble};
 pub use digest::sha256;
+pub use epistemic::{EpistemicPlan, Nature};
 pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, Parquet, read_column, read_sample};
 pub use measured_run::MeasuredRun;
 pub use over::{MOST_CELLS, Over, design_path, option_error};
@@ -78,6 +80,12 @@ pub struct Study {
     pub trade: TradePlan,
     /// What a plan of tightenings is to reach, and by which means.
     pub tighten: TightenPlan,
+    /// What the first calibrated card among later ones was made from.
+    pub calibrated_from: Option<String>,
+    /// The study under the cards before that one: what was believed before the calibration.
+    pub prior: Option<Box<Study>>,
+    /// How what varies is told apart from what is not known.
+    pub epistemic: EpistemicPlan,
     /// The design values that were stated, as written, in the order of [`Target`].
     pub stated: Vec<Stated>,
     /// What a reader should know about how the study was understood.
@@ -103,6 +111,8 @@ pub struct Input {
     pub readings: Option<Readings>,
     /// When its value becomes known.
     pub known: Known,
+    /// Whether it varies from flight to flight or is fixed and not known.
+    pub nature: Nature,
     /// Where the distribution comes from.
     pub source: String,
     /// The factor to which it belongs in grouped sensitivities; the gaps of one statement share one.

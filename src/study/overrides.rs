@@ -149,7 +149,7 @@ impl Override {
 
 fn section_keys(section: &str) -> &'static [KeyInfo] {
     use super::vocabulary::{
-        NUMERICS, RELIABILITY, REQUIREMENT, SAMPLING, SENSITIVITY, TIGHTEN, TRADE,
+        EPISTEMIC, NUMERICS, RELIABILITY, REQUIREMENT, SAMPLING, SENSITIVITY, TIGHTEN, TRADE,
     };
     match section {
         "requirement" => REQUIREMENT,
@@ -159,6 +159,7 @@ fn section_keys(section: &str) -> &'static [KeyInfo] {
         "reliability" => RELIABILITY,
         "trade" => TRADE,
         "tighten" => TIGHTEN,
+        "epistemic" => EPISTEMIC,
         _ => &[],
     }
 }

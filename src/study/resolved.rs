@@ -1,6 +1,6 @@
 //! Every resolved value of a study with where it comes from, for `reeldown check`.
 
-use super::{Known, Study};
+use super::{Known, Nature, Study};
 use crate::physics::design::Target;
 use crate::physics::parameters::{PARAMETERS, Parameter};
 use crate::units::{self, Quantity};
@@ -41,6 +41,8 @@ pub struct UncertainLaw {
     pub source: String,
     /// When the value becomes known.
     pub known: Known,
+    /// Whether it varies from flight to flight or is fixed and not known.
+    pub nature: Nature,
     /// The factor of grouped sensitivities.
     pub group: Option<String>,
     /// How many independent inputs follow it: the surfaces that share a statement.
@@ -96,6 +98,7 @@ impl Study {
             sd: input.marginal.sd(),
             source: input.source.clone(),
             known: input.known,
+            nature: input.nature,
             group: input.group.clone(),
             inputs: members.len(),
         });

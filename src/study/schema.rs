@@ -3,13 +3,13 @@
 //! Made from the tables that the parser reads, so that neither knows a key that the other does not.
 //! A schema cannot tell units, ranges across keys or files; `reeldown check` does.
 
-use super::Known;
 use super::correlation::MEASURES;
 use super::laws::{Kind, LAWS, LawInfo, TERMS, keys_of};
 use super::vocabulary::{
-    CARD, CORRELATION, GRADE, INPUT, JOINT, KeyInfo, LIMIT, METHODS, NUMERICS, RELIABILITY,
-    REQUIREMENT, SAMPLING, SENSITIVITY, STUDY, TIGHTEN, TRADE, UNTIL,
+    CARD, CORRELATION, EPISTEMIC, GRADE, INPUT, JOINT, KeyInfo, LIMIT, METHODS, NUMERICS,
+    RELIABILITY, REQUIREMENT, SAMPLING, SENSITIVITY, STUDY, TIGHTEN, TRADE, UNTIL,
 };
+use super::{Known, Nature};
 use crate::descent::{Model, OutcomeQuantity};
 use crate::physics::parameters::{PARAMETERS, Parameter, ParameterInfo};
 use crate::sampling;
@@ -71,6 +71,7 @@ pub fn study() -> Value {
         "sensitivity" => sensitivity.clone(),
         "trade" => trade.clone(),
         "tighten" => tighten.clone(),
+        "epistemic" => epistemic(),
         _ => reliability.clone(),
     };
     let mut schema = table(STUDY, section, &["title", "card"]);
@@ -186,6 +187,18 @@ fn until() -> Value {
     let rules = ["relative_error", "decided"].map(|rule| json!({ "required": [rule] }));
     insert(&mut schema, "oneOf", json!(rules));
     schema
+}
+
+/// Sets of values, and an even number of descents with each.
+fn epistemic() -> Value {
+    let value = |info: &KeyInfo| match info.name {
+        "outer" => json!({ "anyOf": [
+            { "const": 0 },
+            { "type": "integer", "minimum": 200, "multipleOf": 20 }
+        ] }),
+        _ => json!({ "type": "integer", "minimum": 4, "multipleOf": 2 }),
+    };
+    table(EPISTEMIC, value, &[])
 }
 
 /// A quantity's name among the definitions.
@@ -309,6 +322,7 @@ fn input(info: &ParameterInfo) -> Value {
         let value = match common.name {
             "law" => json!({ "enum": LAWS.iter().map(|law| law.name).collect::<Vec<_>>() }),
             "known" => json!({ "enum": Known::ALL.map(Known::name) }),
+            "nature" => json!({ "enum": Nature::ALL.map(Nature::name) }),
             "cost" => cost(),
             "each_surface" if info.parameter != Parameter::BrakeGap => continue,
             "each_surface" => json!({ "type": "boolean", "default": false }),
@@ -415,6 +429,7 @@ fn joint() -> Value {
         "columns" => paths(|_| text("shear_factor"), text("gap_3_m")),
         "sha256" => json!({ "type": "string", "pattern": "^\\s*[0-9a-fA-F]{64}\\s*$" }),
         "known" => json!({ "enum": Known::ALL.map(Known::name) }),
+        "nature" => json!({ "enum": Nature::ALL.map(Nature::name) }),
         "cost" => cost(),
         _ => text("posterior of the truck tests"),
     };

@@ -3,10 +3,11 @@
 use super::assemble::Files;
 use super::card::{Card, parameter_path, unknown_input};
 use super::document::{Key, Node, Value};
+use super::inputs::nature;
 use super::read::{self, Section};
 use super::sections::possible_range;
 use super::vocabulary::JOINT;
-use super::{Known, TighteningCost, tighten};
+use super::{Known, Nature, TighteningCost, tighten};
 use crate::error::{Error, Result};
 use crate::physics::design::Target;
 use crate::physics::parameters::{PARAMETERS, Parameter};
@@ -33,6 +34,7 @@ pub(super) struct Together {
     /// Every input with its values, SI, one a row.
     pub members: Vec<(Target, Vec<f64>)>,
     pub known: Known,
+    pub nature: Nature,
     pub source: String,
     pub group: String,
     pub cost: TighteningCost,
@@ -124,6 +126,10 @@ fn read_one(statement: &Node, files: &mut dyn Files) -> Result<Together> {
     let known_names = Known::ALL.map(Known::name);
     let known = section.require("known", "\"never\": when the values become known")?;
     let known = read::choice(known, "time of knowledge", &known_names, Known::from_name)?;
+    let nature = match section.get("nature") {
+        Some(node) => nature(node)?,
+        None => Nature::default_of(known, false),
+    };
     let source = section.require("source", "\"…\": where the sample comes from")?;
     let source = read::string(source, "where the sample comes from")?.trim().to_owned();
     let group = match section.get("group") {
@@ -133,7 +139,7 @@ fn read_one(statement: &Node, files: &mut dyn Files) -> Result<Together> {
     let cost = section.get("cost").map_or(Ok(TighteningCost::default()), tighten::cost)?;
     let key = Key { name: name.to_owned(), place: file.place.clone() };
     let (file, sha256) = (name.to_owned(), content.sha256);
-    Ok(Together { members, known, source, group, cost, file, sha256, unused, key })
+    Ok(Together { members, known, nature, source, group, cost, file, sha256, unused, key })
 }
 
 /// A column that an input is drawn from.

@@ -29,6 +29,13 @@ pub(super) static STUDY: &[KeyInfo] = &[
     key("reliability", "how small probabilities are estimated"),
     key("trade", "how the trade of tolerances is computed"),
     key("tighten", "what a plan of tightenings is to reach, and by which means"),
+    key("epistemic", "how what varies is told apart from what is not known"),
+];
+
+/// Keys of `[epistemic]`.
+pub(super) static EPISTEMIC: &[KeyInfo] = &[
+    key("outer", "sets of values of what is not known; 0 leaves the analysis out"),
+    key("inner", "descents with each set, over what varies; an even number"),
 ];
 
 /// Keys of `[requirement]`.
@@ -101,6 +108,10 @@ pub(super) static CARD: &[KeyInfo] = &[
     key("description", "what the card is about"),
     key("correlation", "dependence between two inputs, as a Gaussian copula"),
     key(
+        "calibrated_from",
+        "what a calibrated card was made from; a run then tells what it changed of the cards before it",
+    ),
+    key(
         "joint",
         "inputs that are drawn together from the rows of a file, such as a posterior sample",
     ),
@@ -115,6 +126,10 @@ pub(super) static JOINT: &[KeyInfo] = &[
     ),
     key("sha256", "SHA-256 of the file, which is refused if it is another"),
     key("known", "when the values become known"),
+    key(
+        "nature",
+        "\"varies\" from flight to flight, or \"unknown\": fixed for this brake, but not known",
+    ),
     key("source", "where the sample comes from"),
     key("group", "what the sample is called as one factor of sensitivities"),
     key(
@@ -127,6 +142,10 @@ pub(super) static JOINT: &[KeyInfo] = &[
 pub(super) static INPUT: &[KeyInfo] = &[
     key("law", "the law of the distribution"),
     key("known", "when the value becomes known"),
+    key(
+        "nature",
+        "\"varies\" from flight to flight, or \"unknown\": fixed for this brake, but not known",
+    ),
     key("source", "where the distribution comes from"),
     key("group", "the factor to which the input belongs in grouped sensitivities"),
     key(

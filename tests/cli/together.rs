@@ -93,3 +93,71 @@ fn property_csv_with_units_is_the_same_sample_in_si() {
     let refused = reeldown(&["check", &place.at("study.toml")]).ended_with(1);
     assert!(refused.err.contains("si.csv is another file: its SHA-256 is "), "{}", refused.err);
 }
+
+#[test]
+fn property_a_calibrated_card_tells_what_it_changed() {
+    let place = Place::new("together-calibrated");
+    write(&place, "base.toml", include_str!("../../distributions/habe.toml"));
+    let rows: String = (0..200)
+        .map(|k| format!("{},{}\n", 0.93 + 0.0002 * f64::from(k), 3900.0 + 0.3 * f64::from(k)))
+        .collect();
+    write(&place, "post.csv", &format!("fluid.shear_factor,thermal.fluid_capacity [J/K]\n{rows}"));
+    write(
+        &place,
+        "card.toml",
+        "calibrated_from = \"two runs\"\n[[joint]]\nfile = \"post.csv\"\nknown = \"never\"\nsource = \"test\"\n",
+    );
+    write(&place, "study.toml", &STUDY.replace("samples = 512", "samples = 4000"));
+    let study = place.at("study.toml");
+    let run = |out: &str| {
+        let small = "epistemic={ outer = 400, inner = 32 }";
+        reeldown(&["run", &study, "--set", small, "--out", &place.at(out), "--json"]).json()
+    };
+    let found = run("one");
+    let calibrated = &found["calibrated"];
+    assert_eq!(calibrated["calibrated_from"], "two runs");
+    let moved = calibrated["moved"].as_array().expect("moved inputs");
+    assert_eq!(moved.len(), 2);
+    // A fluid thinner by 5 % of 8 %: the mean moves by 0.6 prior deviations, and P(any breach) falls.
+    assert_eq!(moved[0]["path"], "fluid.shear_factor");
+    let shift = moved[0]["shift"].as_f64().expect("a shift");
+    assert!((-0.7..-0.5).contains(&shift), "{shift}");
+    let events = calibrated["events"].as_array().expect("events");
+    let value =
+        |which: &str| events.last().expect("any")[which]["value"].as_f64().expect("a probability");
+    assert!(value("posterior") < value("prior") - 0.05, "{events:?}");
+    // Before: what the shipped card alone gives, with the same seed.
+    write(
+        &place,
+        "alone.toml",
+        &STUDY.replace("samples = 512", "samples = 4000").replace(", \"card.toml\"", ""),
+    );
+    let alone = reeldown(&[
+        "run",
+        &place.at("alone.toml"),
+        "--set",
+        "epistemic.outer=0",
+        "--out",
+        &place.at("alone"),
+        "--json",
+    ])
+    .json();
+    let any = alone["probabilities"]
+        .as_array()
+        .expect("events")
+        .iter()
+        .find(|p| p["title"] == "any limit");
+    assert_eq!(any.expect("any")["probability"].as_f64(), Some(value("prior")));
+    // The band is narrower, and the unknowns are told apart from what varies.
+    let band = |which: &str| {
+        let ends = events.last().expect("any")[which].as_array().expect("a band").clone();
+        ends[1].as_f64().expect("an end") - ends[0].as_f64().expect("an end")
+    };
+    assert!(band("posterior_band") < band("prior_band"));
+    assert_eq!(found["epistemic"]["varying"][0], "initial.temperature");
+    let report = std::fs::read_to_string(place.path().join("one/report.md")).expect("a report");
+    assert!(
+        report.contains("## What did the calibration change?") && report.contains("p-box-time.svg")
+    );
+    assert_eq!(run("two"), found, "the same bytes again");
+}

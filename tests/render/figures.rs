@@ -49,7 +49,7 @@ fn paper() -> Vec<Figure> {
 fn property_figures_are_well_formed_scale_and_have_a_name() {
     let run = figures(&independent().findings);
     let other = figures(&replicated().findings);
-    assert_eq!(run.all().count(), 15);
+    assert_eq!(run.all().count(), 19);
     for figure in run.all().chain(other.all()).chain(&paper()) {
         assert_complete(figure);
     }

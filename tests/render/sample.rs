@@ -49,6 +49,10 @@ fn run(settings: &[&str]) -> Sample {
         slopes: campaign::screening::slopes(&study),
         shapley: Err(unasked()),
         trade: Err(unasked()),
+        calibrated: None,
+        epistemic: campaign::epistemic::run_epistemic(&study, &progress)
+            .expect("nested descents")
+            .ok_or_else(|| "none".to_owned()),
         known: Err(unasked()),
         command: "reeldown run".to_owned(),
     })

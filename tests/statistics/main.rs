@@ -4,6 +4,7 @@ mod designs;
 mod given_data;
 mod latin_hypercube;
 mod low_discrepancy;
+mod nested;
 mod probability;
 mod quantiles;
 mod replicates;

@@ -100,3 +100,17 @@ fn property_the_accepted_card_is_understood() {
     let parameter = Parameter::from_path("fluid.shear_factor").expect("a parameter");
     assert!(study.inputs.iter().any(|input| input.target == Target::whole(parameter)));
 }
+
+#[test]
+fn property_a_calibrated_card_after_others_has_a_prior() {
+    let calibrated = format!("calibrated_from = \"four runs\"\n{POSTERIOR}");
+    let study = after_the_shipped(&calibrated);
+    assert_eq!(study.calibrated_from.as_deref(), Some("four runs"));
+    let prior = study.prior.as_deref().expect("a prior");
+    assert!(prior.drawn_together.is_empty() && prior.prior.is_none());
+    assert_eq!(prior.inputs.len(), study.inputs.len());
+    assert_eq!(prior.digest(), after_the_shipped("title = \"nothing\"\n").digest());
+    // Alone, or without the key, nothing is told apart.
+    assert!(card_alone(&calibrated).expect("a study").prior.is_none());
+    assert!(after_the_shipped(POSTERIOR).prior.is_none());
+}

@@ -34,6 +34,7 @@ mod svg;
 mod sweep;
 mod sweep_map;
 mod trade;
+mod unknown;
 
 use crate::findings::Findings;
 
@@ -77,6 +78,8 @@ pub struct ReportFigures {
     pub trade: Vec<Figure>,
     /// Beside what becomes known when: go or no go.
     pub known: Vec<Figure>,
+    /// Beside what is not known: the belief about P, p-boxes.
+    pub epistemic: Vec<Figure>,
     /// Beside the descents: fans.
     pub descents: Vec<Figure>,
 }
@@ -90,6 +93,7 @@ impl ReportFigures {
             &self.drivers,
             &self.trade,
             &self.known,
+            &self.epistemic,
             &self.descents,
         ];
         sections.into_iter().flatten()
@@ -119,6 +123,7 @@ pub fn figures(findings: &Findings) -> ReportFigures {
             .filter_map(go::figure)
             .chain(findings.known.map.as_ref().and_then(go_map::figure))
             .collect(),
+        epistemic: unknown::figures(&findings.epistemic),
         descents: fan::figures(findings),
     }
 }

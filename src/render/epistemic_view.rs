@@ -1,0 +1,153 @@
+//! What varies and what is not known, in a reader's words.
+
+use super::figures_of_speech::{count, probability, probability_interval};
+use super::trade_view::{name_of, percent};
+use crate::findings::{CONFIDENCE, EpistemicEvent, EpistemicFinding};
+use crate::numerics::interval::Estimate;
+use serde::Serialize;
+
+/// What varies and what is not known, ready to be laid out.
+#[derive(Debug, Serialize)]
+pub(super) struct Epistemic {
+    pub none: Option<String>,
+    /// What is to be read first.
+    pub headlines: Vec<String>,
+    /// How it was found.
+    pub about: String,
+    /// One row an event.
+    pub rows: Vec<EventRow>,
+    /// What each unknown carries of the band of P(any breach).
+    pub shares: Vec<ShareRow>,
+    pub no_shares: Option<String>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct EventRow {
+    pub title: String,
+    pub mean: String,
+    pub low: String,
+    pub median: String,
+    pub high: String,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct ShareRow {
+    pub name: String,
+    pub first: String,
+    pub total: String,
+}
+
+/// What varies and what is not known, in words.
+pub(super) fn epistemic(finding: &EpistemicFinding) -> Epistemic {
+    let any = finding.events.iter().find(|event| event.event == "any");
+    Epistemic {
+        none: finding.none.clone(),
+        headlines: any.map_or(Vec::new(), headlines),
+        about: about(finding, any),
+        rows: finding.events.iter().map(row).collect(),
+        shares: any.map_or(Vec::new(), |event| event.shares.iter().map(share).collect()),
+        no_shares: any.and_then(|event| event.no_shares.clone()),
+    }
+}
+
+/// A quantile of P by its share of belief.
+fn quantile(event: &EpistemicEvent, share: f64) -> Option<&Estimate> {
+    event.quantiles.iter().find(|(at, _)| *at == share).map(|(_, estimate)| estimate)
+}
+
+fn shown(estimate: Option<&Estimate>) -> String {
+    estimate.and_then(|e| e.value).map_or("–".to_owned(), probability)
+}
+
+/// "3.1 % (2.2 % … 4.3 %)".
+fn with_interval(estimate: Option<&Estimate>) -> String {
+    let Some(estimate) = estimate else { return "–".to_owned() };
+    match estimate.interval.interval() {
+        Some(_) => format!("{} ({})", percent(estimate), probability_interval(&estimate.interval)),
+        None => percent(estimate),
+    }
+}
+
+fn headlines(any: &EpistemicEvent) -> Vec<String> {
+    let mut lines = vec![format!(
+        "P(any breach) is {} on average; given the true constants of this brake it lies between {} and {} (90 % \
+         of our belief).",
+        with_interval(Some(&any.mean)),
+        shown(quantile(any, 0.05)),
+        shown(quantile(any, 0.95)),
+    )];
+    if let Some((allowed, belief)) = &any.requirement_met {
+        lines.push(format!(
+            "The belief that the requirement is met, P(any breach) at most {}, is {}.",
+            probability(*allowed),
+            with_interval(Some(belief))
+        ));
+    }
+    let leading: Vec<String> = any
+        .shares
+        .iter()
+        .take(3)
+        .filter_map(|share| Some((share, share.total.value?)))
+        .filter(|(_, total)| *total >= 0.05)
+        .map(|(share, total)| format!("`{}` ({})", share.factor, probability(total.min(1.0))))
+        .collect();
+    if !leading.is_empty() {
+        lines.push(format!(
+            "Of the variance of that band, these carry most, interactions included: {}.",
+            leading.join(", ")
+        ));
+    }
+    lines
+}
+
+fn about(finding: &EpistemicFinding, any: Option<&EpistemicEvent>) -> String {
+    if finding.none.is_some() {
+        return String::new();
+    }
+    let names = |names: &[String]| {
+        names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+    };
+    let noise = any.map_or(0.0, |event| event.noise);
+    let mut text = format!(
+        "From flight to flight vary: {}. Fixed for this brake, but not known: {}. {} sets of values of what is not known, each \
+         with {} descents over what varies; what these few descents do to P of one set (a standard deviation of {}) is \
+         taken out of the band. Intervals are of {} confidence, from the scatter of twenty sections of the sets; {} descents in all.",
+        names(&finding.varying),
+        names(&finding.unknown),
+        count(finding.sets as u64),
+        finding.inner,
+        probability(noise),
+        probability(CONFIDENCE),
+        count(finding.descents)
+    );
+    if finding.faults > 0 {
+        text += &format!(
+            " {} of them could not be computed and are left out of their sets.",
+            count(finding.faults)
+        );
+    }
+    text
+}
+
+fn row(event: &EpistemicEvent) -> EventRow {
+    EventRow {
+        title: event.title.clone(),
+        mean: with_interval(Some(&event.mean)),
+        low: with_interval(quantile(event, 0.05)),
+        median: with_interval(quantile(event, 0.5)),
+        high: with_interval(quantile(event, 0.95)),
+    }
+}
+
+fn share(share: &crate::findings::UnknownShare) -> ShareRow {
+    let index = |estimate: &Estimate| match (estimate.value, estimate.interval.interval()) {
+        (Some(value), Some(i)) => format!("{value:.3} ({:.3} … {:.3})", i.lower, i.upper),
+        (Some(value), None) => format!("{value:.3}"),
+        (None, _) => "–".to_owned(),
+    };
+    ShareRow {
+        name: name_of(&share.factor, share.inputs),
+        first: index(&share.first),
+        total: index(&share.total),
+    }
+}
