@@ -4,6 +4,7 @@
 
 #![warn(missing_docs)]
 
+pub mod calibration;
 pub mod campaign;
 pub mod cli;
 pub mod descent;

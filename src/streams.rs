@@ -4,8 +4,9 @@
 //! seed and the purpose, and the index as its stream number. Samples may therefore be drawn in any
 //! order, by any number of threads, again years later, and one alone, with the same bits.
 
-use rand::SeedableRng;
+use crate::numerics::special::normal;
 use rand::rngs::ChaCha8Rng;
+use rand::{Rng, SeedableRng};
 
 /// A random stream; `rand::Rng` and `rand_distr` distributions work on it.
 pub type Stream = ChaCha8Rng;
@@ -52,6 +53,10 @@ pub enum Purpose {
     VaryingShares,
     /// Trajectories of a screening.
     Screening,
+    /// Draws of a posterior.
+    Calibration,
+    /// Data made up from a known truth.
+    Synthetic,
     /// Brakes and states of knowledge behind a plan of tests.
     Planning,
     /// Tests and benchmarks.
@@ -81,6 +86,8 @@ impl Purpose {
             Purpose::UnknownShares => b"unknshar",
             Purpose::VaryingShares => b"varyshar",
             Purpose::Screening => b"screenng",
+            Purpose::Calibration => b"calibrat",
+            Purpose::Synthetic => b"syntheti",
             Purpose::Planning => b"planning",
             Purpose::Test => b"test    ",
         }
@@ -103,10 +110,21 @@ pub fn keyed(seed: u64, purpose: Purpose) -> Stream {
     Stream::from_seed(key)
 }
 
+/// A uniform number in the open interval (0, 1) on the grid of 2⁻⁵³.
+pub fn open_uniform(stream: &mut Stream) -> f64 {
+    let k = stream.next_u64() >> 11;
+    let scale = 1.0 / (1u64 << 53) as f64;
+    if k == 0 { 0.5 * scale } else { k as f64 * scale }
+}
+
+/// A standard-normal number, by inversion.
+pub fn standard_normal(stream: &mut Stream) -> f64 {
+    normal::quantile(open_uniform(stream))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::Rng;
 
     #[test]
     fn property_a_stream_is_a_pure_function_of_its_key() {

@@ -6,6 +6,7 @@
 
 mod breaches;
 pub mod calibrated;
+pub mod calibration;
 pub mod common_numbers;
 pub mod epistemic;
 mod evaluate;

@@ -1,5 +1,6 @@
 //! The command line.
 
+use super::calibrate_arguments::CalibrateArguments;
 use super::rig_arguments::RigArguments;
 use crate::error::Result;
 use crate::store::PARQUET;
@@ -34,6 +35,8 @@ pub(super) enum Command {
     Sweep(SweepArguments),
     /// Find the cheapest tightenings and design change that meet a target, and confirm them
     Tighten(TightenArguments),
+    /// Learn the brake from measured rig runs: a posterior, its checks, and a calibrated card
+    Calibrate(Box<CalibrateArguments>),
     /// The horizontal rig: one run, its modes compared as test options, or the best tests planned
     Rig(Box<RigArguments>),
     /// Draw the paper's figures again and hold them against what the paper says of them

@@ -1,6 +1,8 @@
 //! What was typed, carried out: the only place that prints, and the only one that knows clap.
 
 mod arguments;
+mod calibrate;
+mod calibrate_arguments;
 mod check;
 mod compare;
 mod descend;
@@ -69,6 +71,7 @@ fn carry_out(arguments: Arguments) -> Result<Ending> {
         None => run::run(&arguments.run),
         Some(Command::Run(run)) => run::run(&run),
         Some(Command::Descend(descend)) => descend::descend(&descend),
+        Some(Command::Calibrate(calibrate)) => calibrate::calibrate(&calibrate),
         Some(Command::Compare(compare)) => compare::compare(&compare),
         Some(Command::Sweep(sweep)) => sweep::sweep(&sweep),
         Some(Command::Tighten(tighten)) => tighten::tighten(&tighten),

@@ -2,6 +2,7 @@
 //! JSON holds. Numbers are SI; the renderer chooses units.
 
 pub mod calibrated;
+pub mod calibration;
 pub mod compare;
 mod compare_findings;
 mod compare_studies;

@@ -1,21 +1,8 @@
 //! Random numbers of the reliability methods, from a stream's bits alone: no platform function.
 
 use crate::numerics::elementary::{ln, pow};
-use crate::numerics::special::normal;
 use crate::streams::Stream;
-use rand::Rng;
-
-/// A uniform number in the open interval (0, 1) on the grid of 2⁻⁵³.
-pub fn open_uniform(stream: &mut Stream) -> f64 {
-    let k = stream.next_u64() >> 11;
-    let scale = 1.0 / (1u64 << 53) as f64;
-    if k == 0 { 0.5 * scale } else { k as f64 * scale }
-}
-
-/// A standard-normal number, by inversion.
-pub fn standard_normal(stream: &mut Stream) -> f64 {
-    normal::quantile(open_uniform(stream))
-}
+pub use crate::streams::{open_uniform, standard_normal};
 
 /// A unit vector with uniform direction.
 pub fn direction(stream: &mut Stream, dimension: usize) -> Vec<f64> {

@@ -1,6 +1,7 @@
 //! Findings as text and figures: a terminal summary, a Markdown and an HTML report, SVG. Returns strings; writes and prints nothing.
 
 mod calibrated_view;
+mod calibration;
 mod compare;
 mod driver_view;
 mod epistemic_view;
@@ -21,9 +22,13 @@ mod tighten;
 mod trade_view;
 mod view;
 
+pub use calibration::{
+    calibrated_card, calibrated_laws, calibration_markdown, calibration_terminal,
+};
 pub use compare::{compare_markdown, compare_terminal};
 pub use figures::{
-    Figure, ReportFigures, figures, paper_figures, rig_figures, rig_mode_figures, sweep_figures,
+    Figure, ReportFigures, calibration_figures, figures, paper_figures, rig_figures,
+    rig_mode_figures, sweep_figures,
 };
 pub use html::html;
 pub use json::json;

@@ -128,6 +128,11 @@ pub(super) fn of_bytes(bytes: &[u8]) -> String {
     hexadecimal(&Sha256::digest(bytes))
 }
 
+/// SHA-256 of a file's bytes, in hexadecimal.
+pub fn sha256(bytes: &[u8]) -> String {
+    of_bytes(bytes)
+}
+
 /// SHA-256 of numbers, bit for bit and in their order, in hexadecimal.
 pub(super) fn of_numbers(numbers: &[f64]) -> String {
     let mut hasher = Sha256::new();

@@ -35,6 +35,7 @@ use crate::sampling;
 use crate::uncertainty::{Joint, Marginal, Measure, Readings};
 
 pub use assemble::{Files, NamedText, assemble};
+pub use digest::sha256;
 pub use epistemic::{EpistemicPlan, Nature};
 pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, Parquet, read_column, read_sample};
 pub use measured_run::MeasuredRun;

@@ -2,6 +2,7 @@
 
 mod acceptance;
 mod artefacts;
+mod calibrate;
 mod comparing;
 mod determinism;
 mod disk;

@@ -46,7 +46,7 @@ mod settings;
 pub(super) mod tangents;
 mod thermal;
 
-pub use dispatch::InstructionSet;
+pub use crate::numerics::lanes::InstructionSet;
 pub use settings::{Counts, Settings, default_tolerance};
 
 use super::model::Model;

@@ -14,11 +14,13 @@ pub mod avx2;
 #[cfg(target_arch = "x86_64")]
 pub mod avx512;
 pub mod elementary;
+mod instruction_set;
 mod pair;
 mod scalar;
 mod tangent;
 mod wide;
 
+pub use instruction_set::InstructionSet;
 pub use pair::Pair;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 pub use tangent::Tangent;

@@ -16,6 +16,7 @@
 //! and every browser, forge and office program reads SVG.
 
 mod axis;
+mod calibration;
 mod chart;
 mod contour;
 mod convergence;
@@ -37,6 +38,7 @@ mod unknown;
 
 use crate::findings::Findings;
 
+pub use calibration::calibration_figures;
 pub use paper::{paper_figures, starting_temperature_figure};
 pub use rig::{rig_figures, rig_mode_figures};
 pub use sweep::sweep_figures;

@@ -1,0 +1,124 @@
+//! Repeats calibrations and counts how often the truth lies where the posterior says.
+//!
+//! `cargo run --release --example calibration_certificate -- --repetitions 200` writes
+//! `reports/certificates/calibration.md`: truths drawn from the prior, whose ranks among the posterior's draws must be
+//! uniform (simulation-based calibration: Talts and others, 2018), and the example campaign's own truth, noise drawn anew.
+
+#[path = "../tests/calibration/campaign.rs"]
+mod campaign;
+#[path = "../tests/calibration/repetitions.rs"]
+mod repetitions;
+
+use reeldown::numerics::special::{binomial, chi_squared as chi};
+use reeldown::study::Study;
+use repetitions::{Repetition, chi_squared, from_prior, of_campaign, problem};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+const BINS: usize = 10;
+
+fn main() -> ExitCode {
+    match write() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("calibration_certificate: {why}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn write() -> Result<(), String> {
+    let mut out = PathBuf::from("reports/certificates");
+    let mut repetitions = 200;
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        let value = words.next().ok_or(format!("{word} needs a value"))?;
+        match word.as_str() {
+            "--repetitions" => {
+                repetitions = value.parse().map_err(|_| format!("{value}: a number"))?;
+            }
+            "--out" => out = PathBuf::from(value),
+            _ => return Err(format!("{word}: --repetitions N or --out DIR")),
+        }
+    }
+    let study = Study::load(None, &[]).map_err(|why| why.to_string())?;
+    let problem = problem(&study);
+    let run = |what: &str, one: &dyn Fn(u64) -> Repetition| -> Vec<Repetition> {
+        (0..repetitions)
+            .map(|k| {
+                if k % 10 == 0 {
+                    eprintln!("{what} {k} of {repetitions}");
+                }
+                one(k)
+            })
+            .collect()
+    };
+    let prior = run("prior", &|k| from_prior(&study, &problem, k));
+    let campaign = run("campaign", &|k| of_campaign(&study, k));
+    let mut text = format!(
+        "# Calibration certificate\n\nMade by `cargo run --release --example calibration_certificate -- --repetitions \
+         {repetitions}`; version {}. Each repetition is a posterior of 2 replicates of 400 particles.\n\n\
+         | truths | repetitions | truth in the 95 % region | share, exact 95 % interval | repetitions with a failed gate |\n\
+         | --- | ---: | ---: | --- | ---: |\n",
+        env!("CARGO_PKG_VERSION")
+    );
+    for (name, all) in [
+        ("drawn from the prior, data from the model", &prior),
+        ("the example campaign's one truth", &campaign),
+    ] {
+        let inside = all.iter().filter(|r| r.inside).count();
+        let failed = all.iter().filter(|r| !r.failures.is_empty()).count();
+        let (low, high) = interval(inside as u64, repetitions);
+        text += &format!(
+            "| {name} | {repetitions} | {inside} | {:.1} % ({:.1} … {:.1} %) | {failed} |\n",
+            100.0 * inside as f64 / repetitions as f64,
+            100.0 * low,
+            100.0 * high
+        );
+    }
+    text += &format!(
+        "\nThe 95 % region is of the {} hardware parameters together: the truth is inside if it is no farther from the \
+         draws' mean, in their own covariance, than 95 % of the draws. For truths drawn from the prior the share must be \
+         95 %; for a single truth a Bayesian region has no such duty.\n\n\
+         ## Ranks\n\nSimulation-based calibration: the truth's rank among the draws is uniform if the posterior is right. \
+         Chi-squared over {BINS} bins; of {} coordinates tested, about one in twenty falls below 0.05 by chance.\n\n\
+         | coordinate | chi-squared | p |\n| --- | ---: | ---: |\n",
+        22,
+        prior[0].ranks.len()
+    );
+    let mut low = 0;
+    let mut all = Vec::new();
+    for j in 0..prior[0].ranks.len() {
+        let shares: Vec<f64> = prior.iter().map(|r| r.ranks[j].1).collect();
+        let statistic = chi_squared(&shares, BINS);
+        let p = chi::survival(BINS as f64 - 1.0, statistic);
+        low += usize::from(p < 0.05);
+        text += &format!("| `{}` | {statistic:.1} | {p:.3} |\n", prior[0].ranks[j].0);
+        all.push(p);
+    }
+    let smallest = all.iter().copied().fold(1.0, f64::min);
+    text += &format!(
+        "\n{low} of {} lie below 0.05; the smallest is {smallest:.4}, which among so many has probability {:.2}.\n",
+        all.len(),
+        1.0 - reeldown::numerics::elementary::pow(1.0 - smallest, all.len() as f64)
+    );
+    std::fs::create_dir_all(&out).map_err(|why| why.to_string())?;
+    let path = out.join("calibration.md");
+    std::fs::write(&path, text).map_err(|why| format!("{}: {why}", path.display()))
+}
+
+/// Clopper and Pearson's interval of a share, 95 %.
+fn interval(count: u64, of: u64) -> (f64, f64) {
+    let solve = |wanted: &dyn Fn(f64) -> bool| {
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if wanted(middle) { low = middle } else { high = middle }
+        }
+        low
+    };
+    let low =
+        if count == 0 { 0.0 } else { solve(&|p| binomial::survival(count - 1, of, p) < 0.025) };
+    let high = if count == of { 1.0 } else { solve(&|p| binomial::cdf(count, of, p) > 0.025) };
+    (low, high)
+}

@@ -1,0 +1,59 @@
+//! The options of `reeldown calibrate`.
+
+use super::arguments::StudyArguments;
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(super) struct CalibrateArguments {
+    #[command(flatten)]
+    pub study: StudyArguments,
+    /// A measured run, CSV with units in its header or Parquet in SI; once for each run
+    #[arg(long, value_name = "FILE", required = true)]
+    pub data: Vec<PathBuf>,
+    /// A measured run that is predicted only, to check the posterior
+    #[arg(long, value_name = "FILE")]
+    pub hold_out: Vec<PathBuf>,
+    /// What drives the predictions: force, speed [default: force where it was recorded]
+    #[arg(long, value_name = "QUANTITY")]
+    pub drive: Option<String>,
+    /// Standard deviation of a channel's sensor, such as speed="0.02 ft/s"; estimated where not stated
+    #[arg(long, value_name = "CHANNEL=VALUE")]
+    pub sensor_sd: Vec<String>,
+    /// What the model's discrepancy is expected to be, as a share of each channel's range; none for a
+    /// model that is taken as right [default: 1 %]
+    #[arg(long, value_name = "SHARE")]
+    pub discrepancy: Option<String>,
+    /// Noise with heavy tails, Student's t with so many degrees of freedom: outliers count less
+    #[arg(long, value_name = "DF", value_parser = degrees_of_freedom)]
+    pub heavy_tails: Option<f64>,
+    /// Calibrate even if a unit seems wrong or the card cannot explain the readings
+    #[arg(long)]
+    pub accept: bool,
+    /// Particles of each replicate [default: 1000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(100..=1_000_000))]
+    pub particles: Option<u32>,
+    /// Independent replicates of the sampling [default: 4]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=100))]
+    pub replicates: Option<u32>,
+    /// Seed of every random stream, in place of the study's
+    #[arg(long, value_name = "S")]
+    pub seed: Option<String>,
+    /// Directory for report, joint sample and cards [default: runs/<study>-calibrated]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Number of threads [default: one a core]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Print the findings as one JSON object in SI, and nothing else, on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Degrees of freedom of Student's t: more than two, for the variance to exist.
+fn degrees_of_freedom(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 2.0 && value <= 1e6 => Ok(value),
+        _ => Err("expected a number above 2, such as 4".to_owned()),
+    }
+}

@@ -1,0 +1,9 @@
+//! Calibration against answers that are known.
+
+mod campaign;
+mod linear;
+mod noise;
+mod planning;
+mod repetitions;
+mod screening;
+mod truth;

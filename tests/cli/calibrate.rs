@@ -1,0 +1,82 @@
+//! `reeldown calibrate` on the shipped campaign, and `run` on the card that it writes.
+
+use crate::program::{Place, reeldown};
+
+const CAMPAIGN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/distributions/calibrated/campaign/");
+
+fn run(name: &str) -> String {
+    format!("{CAMPAIGN}{name}.csv")
+}
+
+#[test]
+fn property_the_shipped_campaign_gives_a_card_that_run_can_use() {
+    let place = Place::new("calibrate");
+    let out = place.path().join("out").display().to_string();
+    let (force, power, held) = (run("constant_force"), run("constant_power"), run("hold_out"));
+    let common = ["--data", &force, "--data", &power, "--hold-out", &held, "--out", &out, "--json"];
+    let small = ["--particles", "400", "--replicates", "2"];
+    let arguments: Vec<&str> = ["calibrate"].into_iter().chain(common).chain(small).collect();
+    let finding = reeldown(&arguments).ended_with(0).json();
+    assert_eq!(finding["accepted"], true);
+    assert_eq!(finding["runs"].as_array().map(Vec::len), Some(3));
+    let named = |name: &str| {
+        let all = finding["parameters"].as_array().expect("parameters");
+        all.iter().find(|p| p["name"] == name).expect("the parameter").clone()
+    };
+    // The truth is 1.07 and 770 W/K (tests/calibration/campaign.rs): within four posterior standard deviations.
+    for (name, truth) in [("fluid.shear_factor", 1.07), ("thermal.fluid_rotor_conductance", 770.0)]
+    {
+        let posterior = named(name)["posterior"].clone();
+        let (mean, sd) =
+            (posterior[0].as_f64().expect("a mean"), posterior[1].as_f64().expect("an sd"));
+        assert!((mean - truth).abs() < 4.0 * sd, "{name}: {mean} ± {sd}");
+    }
+    assert_eq!(named("brake.gap (each of 14)")["prior_dominated"], true);
+    for file in ["report.md", "findings.json", "posterior.parquet", "figures/shrinkage.svg"] {
+        assert!(place.path().join("out").join(file).is_file(), "{file}");
+    }
+    // The same bytes again, on one thread.
+    let card = std::fs::read(place.path().join("out/calibrated.toml")).expect("the card");
+    let one: Vec<&str> = arguments.iter().copied().chain(["--threads", "1"]).collect();
+    reeldown(&one).ended_with(0);
+    assert!(std::fs::read(place.path().join("out/calibrated.toml")).expect("the card") == card);
+    for card in ["calibrated.toml", "calibrated_laws.toml"] {
+        let habe = concat!(env!("CARGO_MANIFEST_DIR"), "/distributions/habe.toml");
+        let set = format!("card=[\"{habe}\", \"{out}/{card}\"]");
+        let checked = reeldown(&["check", "--set", &set, "--json"]).ended_with(0).json();
+        let inputs = checked["inputs"].as_array().expect("inputs");
+        let shear = inputs.iter().find(|i| i["path"] == "fluid.shear_factor").expect("the input");
+        let mean = shear["uncertain"]["mean"].as_f64().expect("a mean");
+        let posterior = named("fluid.shear_factor")["posterior"][0].as_f64().expect("a mean");
+        assert!((mean - posterior).abs() < 1e-3, "{card}: {mean} {posterior}");
+    }
+}
+
+#[test]
+fn property_a_mistaken_unit_is_refused_with_its_name() {
+    let place = Place::new("calibrate-unit");
+    let text = std::fs::read_to_string(run("constant_force")).expect("the shipped run");
+    let wrong = place.path().join("wrong.csv");
+    std::fs::write(&wrong, text.replacen("force [lbf]", "force [N]", 1)).expect("a file");
+    let wrong = wrong.display().to_string();
+    let answer = reeldown(&["calibrate", "--data", &wrong]).ended_with(1);
+    assert!(answer.err.contains("lbf") && answer.err.contains("--accept"), "{}", answer.err);
+}
+
+#[test]
+fn property_bad_options_say_what_was_expected() {
+    let data = run("constant_force");
+    for (arguments, said) in [
+        (vec!["--sensor-sd", "sped=1 ft/s"], "only force, speed"),
+        (vec!["--sensor-sd", "speed=1 lbf"], "--sensor-sd"),
+        (vec!["--discrepancy", "-1 %"], "positive"),
+        (vec!["--drive", "power"], "force or its speed"),
+        (vec!["--data", &data], "counts once"),
+        (vec!["--set", "card=[]"], "nothing to calibrate"),
+    ] {
+        let all: Vec<&str> =
+            ["calibrate", "--data", &data].into_iter().chain(arguments.clone()).collect();
+        let answer = reeldown(&all).ended_with(1);
+        assert!(answer.err.contains(said), "{arguments:?}: {}", answer.err);
+    }
+}
