@@ -19,6 +19,9 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub command: Option<Command>,
+    /// Write every figure as PNG too, beside its SVG
+    #[arg(long, global = true)]
+    pub png: bool,
     #[command(flatten)]
     pub run: RunArguments,
 }

@@ -1,6 +1,7 @@
 //! `reeldown calibrate`: rig runs in, a posterior card out.
 
 use super::calibrate_arguments::CalibrateArguments;
+use super::figure_files::write_figures;
 use super::output::{say, say_error};
 use super::run::quoted;
 use super::{Ending, done};
@@ -64,9 +65,7 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
         .map_err(|reason| Error::argument(format!("the findings cannot be written: {reason}")))?;
     let figures = render::calibration_figures(&finding);
     write_text(&directory.join(FINDINGS), &format!("{json}\n"))?;
-    for figure in &figures {
-        write_text(&directory.join(FIGURES).join(figure.file_name()), &figure.svg)?;
-    }
+    write_figures(&directory.join(FIGURES), &figures)?;
     write_text(&directory.join(REPORT), &render::calibration_markdown(&finding, &figures))?;
     if finding.accepted {
         write_cards(&directory, &study, &found, &finding)?;

@@ -1,6 +1,7 @@
 //! `reeldown descend`: one nominal descent.
 
 use super::arguments::DescendArguments;
+use super::figure_files::write_figures;
 use super::{Ending, done};
 use crate::descent::reference::{self, REFERENCE_TOLERANCE, Sample, Trajectory};
 use crate::descent::{Fault, Model, Outcome, OutcomeQuantity};
@@ -9,7 +10,7 @@ use crate::findings;
 use crate::physics::motion::OBSERVABLES;
 use crate::physics::{Coefficients, Design};
 use crate::render::{paper_figures, table};
-use crate::store::{Field, write_table, write_text};
+use crate::store::{Field, write_table};
 use crate::study::Study;
 use crate::units::engineering;
 use serde_json::{Map, Value, json};
@@ -44,10 +45,7 @@ pub(super) fn descend(arguments: &DescendArguments) -> Result<Ending> {
 /// Draws the paper's figures, from the steady solution as the paper does.
 fn draw(design: &Design, directory: &Path) -> Result<()> {
     let runs = findings::paper_runs(design, Model::QuasiSteady).map_err(cannot_integrate)?;
-    for figure in paper_figures(&runs) {
-        write_text(&directory.join(figure.file_name()), &figure.svg)?;
-    }
-    Ok(())
+    write_figures(directory, &paper_figures(&runs))
 }
 
 fn cannot_integrate(fault: Fault) -> Error {

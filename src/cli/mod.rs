@@ -8,6 +8,7 @@ mod compare;
 mod descend;
 mod describe;
 mod diagnostics;
+mod figure_files;
 mod output;
 mod paper;
 mod parentage;
@@ -57,6 +58,7 @@ impl From<Ending> for ExitCode {
 /// Reads the command line and carries it out. Usage errors exit with 2, by clap.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    figure_files::ask_for_png(arguments.png);
     match carry_out(arguments) {
         Ok(ending) => ending.into(),
         Err(error) => {

@@ -1,6 +1,7 @@
 //! `reeldown paper`: the paper's figures and statements, held against a design.
 
 use super::arguments::PaperArguments;
+use super::figure_files::write_figures;
 use super::run::quoted;
 use super::{Ending, done};
 use crate::error::{Error, Result};
@@ -18,9 +19,7 @@ pub(super) fn paper(arguments: &PaperArguments) -> Result<Ending> {
     let finding = findings(&study)?;
     if let Some(directory) = &arguments.out {
         let page = paper_page(&finding, &design(&study), &command(arguments));
-        for figure in &page.figures {
-            write_text(&directory.join("figures").join(figure.file_name()), &figure.svg)?;
-        }
+        write_figures(&directory.join("figures"), &page.figures)?;
         write_text(&directory.join("report.md"), &page.markdown)?;
         write_text(&directory.join("paper.json"), &format!("{}\n", json(&finding)?))?;
     }

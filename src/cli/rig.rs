@@ -1,6 +1,7 @@
 //! `reeldown rig`: the horizontal rig, its modes compared, and tests planned on it.
 
 use super::descend::{outcome_json, outcome_table, write_trace};
+use super::figure_files::write_figures;
 use super::rig_arguments::{RigArguments, option};
 use super::{Ending, done};
 use crate::descent::driven::Drive;
@@ -9,15 +10,14 @@ use crate::error::{Error, Result};
 use crate::findings::rig::{self, PlanOptions, RigRun};
 use crate::physics::Parameter;
 use crate::render::{
-    Figure, rig_comparison_terminal, rig_figures, rig_mode_figures, rig_plan_terminal, table,
+    rig_comparison_terminal, rig_figures, rig_mode_figures, rig_plan_terminal, table,
 };
-use crate::store::{read_number_columns, write_text};
+use crate::store::read_number_columns;
 use crate::study::measured_run::Acceptance;
 use crate::study::{Limit, MeasuredRun, Study};
 use crate::units::{Quantity, System, engineering, format_engineering};
 use serde::Serialize;
 use serde_json::{Value, json};
-use std::path::Path;
 
 /// Runs, compares or plans.
 pub(super) fn rig(arguments: &RigArguments) -> Result<Ending> {
@@ -225,11 +225,4 @@ fn plan(arguments: &RigArguments, study: &Study, runs: usize, proof_load_n: f64)
 fn as_json(finding: &impl Serialize) -> Result<String> {
     serde_json::to_string_pretty(finding)
         .map_err(|reason| Error::argument(format!("the result cannot be written: {reason}")))
-}
-
-fn write_figures(directory: &Path, figures: &[Figure]) -> Result<()> {
-    for figure in figures {
-        write_text(&directory.join(figure.file_name()), &figure.svg)?;
-    }
-    Ok(())
 }

@@ -1,6 +1,7 @@
 //! `reeldown run`: the main job.
 
 use super::arguments::RunArguments;
+use super::figure_files::write_figures;
 use super::output::{say, say_error, stdout_style};
 use super::sensitivity_table::{SENSITIVITY, write_sensitivity};
 use super::trade_tables::{TRADE, write_trade};
@@ -244,9 +245,7 @@ impl Run<'_> {
         let at = |name: &str| self.directory.join(name);
         write_text(&at(FINDINGS), &render::json(findings)?)?;
         let figures = render::figures(findings);
-        for figure in figures.all() {
-            write_text(&at(FIGURES).join(figure.file_name()), &figure.svg)?;
-        }
+        write_figures(&at(FIGURES), figures.all())?;
         write_text(&at(REPORT), &render::markdown(findings, &figures)?)?;
         write_text(&at(REPORT_HTML), &render::html(findings, &figures)?)?;
         write_sensitivity(&at(SENSITIVITY), findings, &self.parentage)?;

@@ -1,6 +1,7 @@
 //! `reeldown sweep`: the design space along one or two paths.
 
 use super::arguments::SweepArguments;
+use super::figure_files::write_figures;
 use super::output::{say, say_error};
 use super::run::quoted;
 use super::watch::{Watch, stop_on_interrupt};
@@ -159,9 +160,7 @@ fn command(arguments: &SweepArguments) -> String {
 fn write(directory: &Path, study: &Study, finding: &SweepFinding, json: &str) -> Result<()> {
     write_text(&directory.join(FINDINGS), &format!("{json}\n"))?;
     let figures = render::sweep_figures(finding);
-    for figure in &figures {
-        write_text(&directory.join("figures").join(figure.file_name()), &figure.svg)?;
-    }
+    write_figures(&directory.join("figures"), &figures)?;
     write_text(&directory.join(REPORT), &render::sweep_markdown(finding, &figures))?;
     write_long_table(&directory.join(TABLE), study, finding)
 }

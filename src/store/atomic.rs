@@ -105,8 +105,16 @@ pub(super) fn cannot_write(path: &Path, reason: impl std::fmt::Display) -> Error
 /// # Errors
 /// If the file cannot be written.
 pub fn write_text(path: &Path, text: &str) -> Result<()> {
+    write_bytes(path, text.as_bytes())
+}
+
+/// Writes a whole file.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut file = AtomicFile::create(path)?;
-    file.write_all(text.as_bytes()).map_err(|reason| cannot_write(path, reason))?;
+    file.write_all(bytes).map_err(|reason| cannot_write(path, reason))?;
     file.commit()
 }
 

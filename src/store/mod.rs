@@ -8,7 +8,7 @@ mod damage;
 mod outcomes_file;
 mod parquet;
 
-pub use atomic::{AtomicFile, refuse_obstacle, write_text};
+pub use atomic::{AtomicFile, refuse_obstacle, write_bytes, write_text};
 pub use column_file::{NumberColumns, PARQUET, read_number_column, read_number_columns};
 pub use outcomes_file::{OutcomesReader, OutcomesWriter, Parentage};
 pub use parquet::{Field, write_table};

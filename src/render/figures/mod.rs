@@ -12,8 +12,7 @@
 //! The palette is Okabe and Ito's, distinct to colour-blind eyes and in grey: what keeps the limits is
 //! blue, what breaches them vermillion, and a limit is a labelled dashed line.
 //!
-//! The same findings give the same bytes. There is no PNG: `resvg` and its fonts would be 40 more crates,
-//! and every browser, forge and office program reads SVG.
+//! The same findings give the same bytes. PNG is made from the SVG on request ([`super::png`]).
 
 mod axis;
 mod calibration;
