@@ -14,7 +14,7 @@ use crate::sampling::{Design, Sampler};
 use crate::sensitivity::conditional_normal::Conditioning;
 use crate::streams::Purpose;
 use crate::study::Study;
-use crate::uncertainty::Marginal;
+use crate::uncertainty::{JointSample, Marginal};
 use std::ops::Range;
 
 /// What a variant changes in a study.
@@ -211,12 +211,25 @@ impl<'a> CommonSample<'a> {
         }
     }
 
+    /// The normal scores of the places of the rows from which inputs are drawn together.
+    pub fn row_scores(&self, drawn: &JointSample) -> Vec<f64> {
+        let coordinate = self.points.column(drawn.coordinate());
+        let mut scores = coordinate.to_vec();
+        if self.study.joint.copula().is_none() {
+            crate::numerics::special::normal::quantile_column(coordinate, &mut scores);
+        }
+        scores
+    }
+
     /// The normal scores Φ⁻¹(F(x)) of an input.
     pub fn normal_scores(&self, j: usize) -> Vec<f64> {
         if !self.is_alone(j) {
-            // A value drawn from a table: the middle of its step, which is never 0 nor 1.
+            // A value drawn from a table: its law runs from 0 at the least to 1 at the greatest, and each row
+            // has an equal part of the interval, of which this is the middle.
             let law = &self.study.inputs[j].marginal;
-            let middle = |&x: &f64| 0.5 * (law.cdf(x.next_down()) + law.cdf(x));
+            let rows =
+                self.study.joint.sample_of(j).map_or(1, |sample| sample.rows().rows()) as f64;
+            let middle = |&x: &f64| ((rows - 1.0) * law.cdf(x) + 0.5) / rows;
             let scores = self.inputs.column(j).iter().map(middle);
             return scores.map(crate::numerics::special::normal::quantile).collect();
         }

@@ -67,7 +67,7 @@ pub fn run_given(
     let sample = CommonSample::of_run(study, ROWS)?;
     let table = Ensemble::new(study).at_inputs(sample.inputs(), progress);
     let breaches = Breaches::of(study, &table);
-    let factors = factors(study);
+    let factors = inputs_then_groups(study);
     let events = (0..study.limits.len()).map(Event::Limit).chain([Event::Any]);
     let events: Vec<Event> = events.filter(|_| !study.limits.is_empty()).collect();
     let breaching = events.iter().map(|&event| {
@@ -98,6 +98,13 @@ pub fn run_given(
         replicates: sample.replicates(),
         factors,
     }))
+}
+
+/// Every input by itself, also of those drawn together, then every group of several as one.
+fn inputs_then_groups(study: &Study) -> Vec<Factor> {
+    let alone = study.inputs.iter().enumerate();
+    let alone = alone.map(|(j, input)| Factor { name: input.target.path(), columns: vec![j] });
+    alone.chain(factors(study).into_iter().filter(|factor| factor.columns.len() > 1)).collect()
 }
 
 /// The first breaching samples of the whole run.
@@ -131,6 +138,12 @@ fn scores(sample: &CommonSample<'_>, factors: &[Factor]) -> Vec<Vec<f64>> {
     };
     in_parallel(factors, |factor| {
         let members = &factor.columns;
+        // Inputs drawn together: the place of their row, along which they move together.
+        let together = members.first().and_then(|&j| sample.study().joint.sample_of(j));
+        if let Some(drawn) = together.filter(|drawn| members.len() > 1 && drawn.inputs() == members)
+        {
+            return sample.row_scores(drawn);
+        }
         let mut sum = vec![0.0; sample.rows()];
         for &j in members {
             let scores = sample.normal_scores(j);
