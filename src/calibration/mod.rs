@@ -10,6 +10,7 @@
 //! - [`narrowing`]: what a further measurement would teach.
 
 pub mod best_fit;
+mod cloud;
 mod likelihood;
 pub mod narrowing;
 pub mod noise;

@@ -22,7 +22,7 @@ pub(super) struct CalibrateArguments {
     pub sensor_sd: Vec<String>,
     /// What the model's discrepancy is expected to be, as a share of each channel's range; none for a
     /// model that is taken as right [default: 1 %]
-    #[arg(long, value_name = "SHARE")]
+    #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
     pub discrepancy: Option<String>,
     /// Noise with heavy tails, Student's t with so many degrees of freedom: outliers count less
     #[arg(long, value_name = "DF", value_parser = degrees_of_freedom)]

@@ -1,7 +1,7 @@
 //! Calibrations of made-up data whose truth is known: the short form of `examples/calibration_certificate.rs`.
 
 use crate::campaign;
-use crate::repetitions::{chi_squared, from_prior, problem};
+use crate::repetitions::{chi_squared, from_prior, of_campaign, problem};
 use reeldown::calibration::{LeastSquares, LogLikelihood};
 use reeldown::numerics::columns::Columns;
 use reeldown::numerics::special::{binomial, chi_squared as chi};
@@ -23,6 +23,16 @@ fn analytic_ranks_of_truths_from_the_prior_are_uniform_and_regions_hold_them() {
     let ranks: Vec<f64> = all.iter().flat_map(|r| r.ranks.iter().map(|rank| rank.1)).collect();
     let p = chi::survival(4.0, chi_squared(&ranks, 5));
     assert!(p > 1e-4, "{p}: {ranks:?}");
+}
+
+/// The campaign's truth with its noise drawn anew. Two repetitions with 400 particles: both regions miss it with one
+/// chance in 400.
+#[test]
+fn property_the_campaign_s_truth_lies_in_the_region_of_a_repetition() {
+    let study = Study::load(None, &[]).expect("the embedded study");
+    let both: Vec<_> = (0..2).map(|k| of_campaign(&study, k)).collect();
+    let failures: Vec<_> = both.iter().flat_map(|repetition| &repetition.failures).collect();
+    assert!(both.iter().any(|repetition| repetition.inside), "gates that failed: {failures:?}");
 }
 
 #[test]

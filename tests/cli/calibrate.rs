@@ -60,7 +60,11 @@ fn property_a_mistaken_unit_is_refused_with_its_name() {
     std::fs::write(&wrong, text.replacen("force [lbf]", "force [N]", 1)).expect("a file");
     let wrong = wrong.display().to_string();
     let answer = reeldown(&["calibrate", "--data", &wrong]).ended_with(1);
-    assert!(answer.err.contains("lbf") && answer.err.contains("--accept"), "{}", answer.err);
+    assert!(
+        answer.err.contains("header that says lbf") && answer.err.contains("--accept"),
+        "{}",
+        answer.err
+    );
 }
 
 #[test]

@@ -11,6 +11,7 @@ use crate::campaign::{Ensemble, Progress};
 use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
 use crate::numerics::special::normal;
+use crate::sampling::{Design, Sampler};
 use crate::streams::{Purpose, standard_normal, stream};
 use crate::study::Study;
 
@@ -18,8 +19,7 @@ use crate::study::Study;
 pub const BRAKES: usize = 400;
 /// Flights of each.
 pub const FLIGHTS: usize = 256;
-/// Streams of brakes and flights, beyond the replicates'.
-const FLIGHT_STREAM: u64 = 2 << 32;
+/// Stream of brakes, beyond the replicates'.
 const BRAKE_STREAM: u64 = 3 << 32;
 
 /// The probability of a breach over brakes and flights.
@@ -55,6 +55,19 @@ pub fn prior_draws(study: &Study, rows: usize, index: u64) -> Columns {
     inputs
 }
 
+/// [`FLIGHTS`] flights, spread evenly over what varies (a Latin hypercube): all brakes share them, so that what
+/// a plain sample of so few were off by, every brake would be.
+fn flights(study: &Study) -> Result<Columns> {
+    let n = study.inputs.len();
+    let (seed, count) = (study.sampling.seed, FLIGHTS as u64);
+    let sampler = Sampler::new(Design::LatinHypercube, n, count, 1, seed, Purpose::Calibration)?;
+    let mut uniforms = Columns::new(FLIGHTS, n);
+    sampler.fill(0, &mut uniforms)?;
+    let mut inputs = Columns::new(FLIGHTS, n);
+    study.joint.from_uniform(&uniforms, &mut inputs);
+    Ok(inputs)
+}
+
 /// [`BRAKES`] brakes of the prior.
 pub fn prior_brakes(study: &Study) -> Columns {
     prior_draws(study, BRAKES, BRAKE_STREAM)
@@ -68,7 +81,7 @@ pub fn risk(study: &Study, brakes: &Columns, progress: &Progress) -> Result<Risk
     if study.limits.is_empty() {
         return Err(Error::argument("the study states no limit, so nothing can be breached"));
     }
-    let flights = prior_draws(study, FLIGHTS, FLIGHT_STREAM);
+    let flights = flights(study)?;
     let n = study.inputs.len();
     let mut inputs = Columns::new(brakes.rows() * FLIGHTS, n);
     for (j, input) in study.inputs.iter().enumerate() {

@@ -39,7 +39,8 @@ pub(super) fn suspicion(channel: Channel, suspicion: &Suspicion) -> String {
         ),
         Suspicion::Implausible { ratio, bound } => format!(
             "readings are {} times what the card predicts, which its widths explain up to {}, and no usual mistake of \
-             units does: another brake, or a card too narrow?",
+             units in them does: another brake, a card too narrow, or a mistaken unit of what drives the run (a force \
+             in N under a header that says lbf)?",
             number(*ratio, 4),
             number(*bound, 4)
         ),
