@@ -76,7 +76,7 @@ fn property_bad_options_say_what_was_expected() {
         (vec!["--discrepancy", "-1 %"], "positive"),
         (vec!["--drive", "power"], "force or its speed"),
         (vec!["--data", &data], "counts once"),
-        (vec!["--set", "card=[]"], "nothing to calibrate"),
+        (vec!["--set", "card=[]"], "list of cards is empty"),
     ] {
         let all: Vec<&str> =
             ["calibrate", "--data", &data].into_iter().chain(arguments.clone()).collect();
