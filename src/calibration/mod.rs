@@ -3,7 +3,7 @@
 //! Knows nothing of brakes. A calibration sees a [`LogLikelihood`] over parameters in standard-normal space, where
 //! the prior is the law N(0, I), in batches, as a reliability method sees its limit state.
 //! - [`noise`]: how readings scatter about a model that is not quite right;
-//! - [`best_fit`]: the most probable parameters;
+//! - [`best_fit()`]: the most probable parameters;
 //! - [`tempering`] and [`posterior`]: the posterior and the evidence by sequential Monte Carlo, in replicates that check
 //!   each other;
 //! - [`screening`]: what is suspicious about readings before they are used;

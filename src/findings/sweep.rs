@@ -101,7 +101,7 @@ pub struct CellFinding {
     pub outcomes: BTreeMap<String, f64>,
     /// Nominal margin of each limit: negative is a breach.
     pub margins: Vec<Option<f64>>,
-    /// The same as a share of what is allowed, see [`allowed`].
+    /// The same as a share of what is allowed, see `allowed`.
     pub relative_margins: Vec<Option<f64>>,
     /// Place of the limit with the smallest relative margin.
     pub limiting: Option<usize>,
