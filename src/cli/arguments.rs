@@ -63,6 +63,21 @@ pub(super) enum Command {
     Man,
 }
 
+/// On how many threads a command computes.
+#[derive(Debug, Args)]
+pub(super) struct Threads {
+    /// Number of threads [default: one a core]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+}
+
+impl Threads {
+    /// The number asked for.
+    pub fn asked(&self) -> Option<usize> {
+        self.threads.map(usize::from)
+    }
+}
+
 /// Which schema is wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum SchemaKind {
@@ -99,9 +114,8 @@ pub(super) struct RunArguments {
     /// Continue an interrupted or shorter run in the same directory
     #[arg(long)]
     pub resume: bool,
-    /// Number of threads [default: one a core]; the results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub threads: Threads,
     /// Print the findings as one JSON object in SI, and nothing else, on standard output
     #[arg(long)]
     pub json: bool,
@@ -172,9 +186,8 @@ pub(super) struct SweepArguments {
     /// Directory for report, figures and table [default: runs/<study>-sweep]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Number of threads [default: one a core]; the results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub threads: Threads,
     /// Print the findings as one JSON object in SI, and nothing else, on standard output
     #[arg(long)]
     pub json: bool,
@@ -194,9 +207,8 @@ pub(super) struct TightenArguments {
     /// Directory for tighten.json and tighten.md
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Number of threads [default: one a core]; the results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub threads: Threads,
     /// Print the findings as one JSON object in SI, and nothing else, on standard output
     #[arg(long)]
     pub json: bool,

@@ -55,7 +55,7 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
             )));
         }
     }
-    let found = campaign::with_threads(arguments.threads.map(usize::from), || {
+    let found = campaign::with_threads(arguments.threads.asked(), || {
         calibration::calibrate(&study, &calibrated, &unseen, &options, &Progress::default())
     })??;
     let files: Vec<String> =

@@ -1,6 +1,6 @@
 //! The options of `reeldown calibrate`.
 
-use super::arguments::StudyArguments;
+use super::arguments::{StudyArguments, Threads};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -42,9 +42,8 @@ pub(super) struct CalibrateArguments {
     /// Directory for report, joint sample and cards [default: runs/<study>-calibrated]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Number of threads [default: one a core]; the results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub threads: Threads,
     /// Print the findings as one JSON object in SI, and nothing else, on standard output
     #[arg(long)]
     pub json: bool,

@@ -49,7 +49,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Ending> {
     for name in [OUTCOMES, FINDINGS, REPORT, REPORT_HTML, SENSITIVITY, TRADE, PROVENANCE] {
         refuse_obstacle(&directory.join(name))?;
     }
-    campaign::with_threads(arguments.threads.map(usize::from), || {
+    campaign::with_threads(arguments.threads.asked(), || {
         Run { arguments, study: &study, directory: &directory, parentage: parentage::of(&study) }
             .carry_out()
     })?
@@ -263,7 +263,7 @@ impl Run<'_> {
             "host": std::fs::read_to_string("/proc/sys/kernel/hostname").ok().map(|h| h.trim().to_owned()),
             "architecture": std::env::consts::ARCH,
             "operating_system": std::env::consts::OS,
-            "threads": self.arguments.threads.map_or_else(campaign::threads, usize::from),
+            "threads": self.arguments.threads.asked().unwrap_or_else(campaign::threads),
             "wall_time_s": seconds,
             "sampling_time_s": sampling,
             "descents_computed": descents,

@@ -42,7 +42,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Ending> {
     }
     let progress = Arc::new(Progress::default());
     stop_on_interrupt(&progress)?;
-    let finding = campaign::with_threads(arguments.threads.map(usize::from), || {
+    let finding = campaign::with_threads(arguments.threads.asked(), || {
         let descents = samples.unwrap_or(0) * grid.cells().len() as u64;
         let _watch = Watch::start(&progress, descents, "sweeping");
         let cells = run_sweep(&study, &grid, samples, &progress)?;

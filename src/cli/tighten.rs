@@ -24,7 +24,7 @@ pub(super) fn tighten(arguments: &TightenArguments) -> Result<Ending> {
     study.design.validate()?;
     let progress = Arc::new(Progress::default());
     stop_on_interrupt(&progress)?;
-    let found = campaign::with_threads(arguments.threads.map(usize::from), || {
+    let found = campaign::with_threads(arguments.threads.asked(), || {
         let about = EVALUATIONS * study.tighten.samples;
         let _watch = Watch::start(&progress, about, "searching");
         campaign::tighten::tighten(&study, None, &progress)

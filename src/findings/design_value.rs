@@ -7,8 +7,8 @@ use crate::campaign::common_numbers::Event;
 use crate::campaign::trade::{Sweep, TradeOutcomes};
 use crate::error::Result;
 use crate::numerics::elementary::ln;
-use crate::numerics::interval::{Earned, Estimate, Interval};
-use crate::numerics::special::student;
+use crate::numerics::interval::{Earned, Estimate};
+use crate::reliability::jackknife::delete_a_group;
 use crate::study::Study;
 use serde::Serialize;
 
@@ -113,18 +113,7 @@ pub(super) fn best_value(
         let interval = Earned::none("without some of the samples P has no minimum");
         return Estimate { value: Some(value), standard_error: None, interval };
     };
-    let groups = GROUPS as f64;
-    let mean = parts.iter().sum::<f64>() / groups;
-    let squares: f64 = parts.iter().map(|x| (x - mean) * (x - mean)).sum();
-    let error = (squares * (groups - 1.0) / groups).sqrt();
-    let t = student::quantile_upper(groups - 1.0, (1.0 - CONFIDENCE) / 2.0);
-    let interval = Interval {
-        lower: value - t * error,
-        upper: value + t * error,
-        confidence: CONFIDENCE,
-        method: "parabola through ln P, delete-a-group jackknife",
-    };
-    Estimate { value: Some(value), standard_error: Some(error), interval: interval.into() }
+    delete_a_group(value, &parts, CONFIDENCE, "parabola through ln P, delete-a-group jackknife")
 }
 
 /// The vertex of the least-squares parabola through (x, ln p), each weighted by p; `None` if it opens

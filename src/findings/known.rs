@@ -6,9 +6,9 @@ use super::trade::proportion;
 use crate::campaign::common_numbers::{Breaches, Event};
 use crate::campaign::known::{Chart, INNER, KnownOutcomes, Map, Second, Stage};
 use crate::error::Result;
-use crate::numerics::interval::{Earned, Estimate, Interval};
-use crate::numerics::special::student;
+use crate::numerics::interval::Estimate;
 use crate::reliability::demonstration::{Requirement, Verdict};
+use crate::reliability::jackknife::delete_a_group;
 use crate::reliability::probability::Proportion;
 use crate::study::Study;
 use serde::Serialize;
@@ -263,22 +263,7 @@ fn jackknife(sets: &[Counts], statistic: &dyn Fn(&[Counts]) -> f64) -> Estimate 
             statistic(&kept.map(|(_, set)| *set).collect::<Vec<_>>())
         })
         .collect();
-    let groups = GROUPS as f64;
-    let mean = parts.iter().sum::<f64>() / groups;
-    let squares: f64 = parts.iter().map(|x| (x - mean) * (x - mean)).sum();
-    let error = (squares * (groups - 1.0) / groups).sqrt();
-    if !(error > 0.0 && error.is_finite()) {
-        let interval = Earned::none("the groups of the sets show no error");
-        return Estimate { value: Some(value), standard_error: None, interval };
-    }
-    let t = student::quantile_upper(groups - 1.0, (1.0 - CONFIDENCE) / 2.0);
-    let interval = Interval {
-        lower: value - t * error,
-        upper: value + t * error,
-        confidence: CONFIDENCE,
-        method: "nested Monte Carlo, delete-a-group jackknife",
-    };
-    Estimate { value: Some(value), standard_error: Some(error), interval: interval.into() }
+    delete_a_group(value, &parts, CONFIDENCE, "nested Monte Carlo, delete-a-group jackknife")
 }
 
 fn go_chart(study: &Study, chart: &Chart, samples: u64) -> Result<GoChart> {

@@ -9,6 +9,7 @@ pub mod binomial_tails;
 pub mod breach_counts;
 pub mod cheaper_plans;
 pub mod demonstration;
+pub mod jackknife;
 pub mod nested;
 pub mod normal_tolerance;
 pub mod paired;

@@ -30,28 +30,43 @@ pub fn read_number_column(path: &Path, column: &str) -> Result<Vec<f64>, String>
 /// # Errors
 /// If the file cannot be read.
 fn read_number_table(path: &Path) -> Result<Vec<SampleColumn>, String> {
+    let complete = |(name, values): (String, Option<Vec<Option<f64>>>)| {
+        let values = values.ok_or_else(|| "it holds no numbers".to_owned());
+        let values = values.and_then(|values| without_nulls(&name, values));
+        (name, values)
+    };
+    Ok(read_columns(path)?.into_iter().map(complete).collect())
+}
+
+/// Every column of numbers of a Parquet file, by name; a null is `None`. Other columns are left out. A failure
+/// is its reason, in a few words.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn read_number_columns(path: &Path) -> Result<NumberColumns, String> {
+    let columns = read_columns(path)?.into_iter();
+    Ok(columns.filter_map(|(name, values)| Some((name, values?))).collect())
+}
+
+/// Names and values of columns.
+pub type NumberColumns = Vec<(String, Vec<Option<f64>>)>;
+
+/// Every column by name, with its values where they are numbers.
+fn read_columns(path: &Path) -> Result<Vec<(String, Option<Vec<Option<f64>>>)>, String> {
     let file = File::open(path).map_err(|reason| reason.to_string())?;
-    let columns = damage::read(|| {
+    damage::read(|| {
         let frame = ParquetReader::new(file).finish()?;
-        let numbers = |column: &polars::prelude::Column| -> Result<Vec<Option<f64>>, String> {
-            if !column.dtype().is_primitive_numeric() {
-                return Err("it holds no numbers".to_owned());
-            }
-            let cast = column.cast(&DataType::Float64).map_err(|reason| reason.to_string())?;
-            let values = cast.f64().map_err(|reason| reason.to_string())?;
-            Ok(values.iter().collect())
-        };
-        let columns = frame.columns().iter();
-        let columns = columns.map(|column| (column.name().to_string(), numbers(column)));
-        Ok::<Vec<_>, PolarsError>(columns.collect())
-    })?;
-    Ok(columns
-        .into_iter()
-        .map(|(name, values)| {
-            let values = values.and_then(|values| without_nulls(&name, values));
-            (name, values)
-        })
-        .collect())
+        let mut columns = Vec::new();
+        for column in frame.columns() {
+            let values = if column.dtype().is_primitive_numeric() {
+                Some(column.cast(&DataType::Float64)?.f64()?.iter().collect())
+            } else {
+                None
+            };
+            columns.push((column.name().to_string(), values));
+        }
+        Ok::<_, PolarsError>(columns)
+    })
 }
 
 fn without_nulls(column: &str, values: Vec<Option<f64>>) -> Result<Vec<f64>, String> {
@@ -61,26 +76,3 @@ fn without_nulls(column: &str, values: Vec<Option<f64>>) -> Result<Vec<f64>, Str
         .map(|(k, value)| value.ok_or_else(|| format!("row {} of column {column} is null", k + 1)))
         .collect()
 }
-
-/// Every column of numbers of a Parquet file, by name; a null is `None`. Other columns are left out. A failure
-/// is its reason, in a few words.
-///
-/// # Errors
-/// If the file cannot be read.
-pub fn read_number_columns(path: &Path) -> Result<NumberColumns, String> {
-    let file = File::open(path).map_err(|reason| reason.to_string())?;
-    damage::read(|| {
-        let frame = ParquetReader::new(file).finish()?;
-        let mut columns = Vec::new();
-        for column in frame.columns() {
-            if column.dtype().is_primitive_numeric() {
-                let values = column.cast(&DataType::Float64)?;
-                columns.push((column.name().to_string(), values.f64()?.iter().collect()));
-            }
-        }
-        Ok::<NumberColumns, PolarsError>(columns)
-    })
-}
-
-/// Names and values of columns.
-pub type NumberColumns = Vec<(String, Vec<Option<f64>>)>;

@@ -3,9 +3,9 @@
 use super::{Blocks, NestedState, hypercube, share, varying};
 use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
-use crate::numerics::interval::{Earned, Estimate, Interval};
-use crate::numerics::special::student;
+use crate::numerics::interval::Estimate;
 use crate::reliability::draws::open_uniform;
+use crate::reliability::jackknife::delete_a_group;
 use crate::streams::{Purpose, stream};
 
 /// Groups of rows from which the errors are read.
@@ -192,22 +192,8 @@ pub fn shares(
         })
         .collect();
     let estimate = |value: f64, of: &dyn Fn(&Indices) -> f64| {
-        let groups = GROUPS as f64;
-        let mean = without.iter().map(of).sum::<f64>() / groups;
-        let squares: f64 = without.iter().map(|part| (of(part) - mean) * (of(part) - mean)).sum();
-        let error = (squares * (groups - 1.0) / groups).sqrt();
-        if !(error > 0.0 && error.is_finite()) {
-            let interval = Earned::none("the groups of rows show no error");
-            return Estimate { value: Some(value), standard_error: None, interval };
-        }
-        let reach = error * student::quantile_upper(groups - 1.0, 0.5 * (1.0 - confidence));
-        let interval = Interval {
-            lower: value - reach,
-            upper: value + reach,
-            confidence,
-            method: "delete-a-group jackknife over rows",
-        };
-        Estimate { value: Some(value), standard_error: Some(error), interval: interval.into() }
+        let parts: Vec<f64> = without.iter().map(of).collect();
+        delete_a_group(value, &parts, confidence, "delete-a-group jackknife over rows")
     };
     Ok(Shares {
         variance,
