@@ -43,7 +43,10 @@ fn line(findings: &Findings, distribution: &Distribution) -> Option<Line> {
     let quantity = OutcomeQuantity::from_name(distribution.outcome)?;
     let unit = display(quantity.quantity());
     let shown = |si: f64| number(unit.shown(si), 3);
-    let (first, last) = (*distribution.edges.first()?, *distribution.edges.last()?);
+    // A limit beyond what is drawn is an end of the line, apart from the blocks.
+    let limit = distribution.limit_value;
+    let first = distribution.edges.first()?.min(limit);
+    let last = distribution.edges.last()?.max(limit);
     let found = findings
         .probabilities
         .iter()

@@ -38,7 +38,7 @@ fn shrinkage(finding: &CalibrationFinding) -> Option<Figure> {
         (Swatch::Area(BLUE, 0.6), "posterior, middle 90 %".to_owned()),
         (Swatch::Dot(INK), "posterior median".to_owned()),
     ];
-    let x = Axis::linear("prior standard deviations from its mean", -reach, reach);
+    let x = Axis::linear("prior deviations from the prior mean", -reach, reach);
     let y = Axis::linear("", 0.5, rows.len() as f64 + 0.5);
     let height = 90.0 + ROW * rows.len() as f64;
     let mut chart = Chart::with_rows("shrinkage", height, &x, &y, keys, false, Some(rows));

@@ -79,6 +79,21 @@ impl Field {
     }
 }
 
+/// A contour's segments, line by line: those that share an end belong together.
+pub(super) fn lines(segments: &[[Point; 2]], tolerance: Point) -> Vec<Vec<[Point; 2]>> {
+    let same =
+        |a: Point, b: Point| (a.0 - b.0).abs() <= tolerance.0 && (a.1 - b.1).abs() <= tolerance.1;
+    let touch = |a: &[Point; 2], b: &[Point; 2]| a.iter().any(|&p| b.iter().any(|&q| same(p, q)));
+    let mut lines: Vec<Vec<[Point; 2]>> = Vec::new();
+    for segment in segments {
+        let (with, apart): (Vec<_>, Vec<_>) =
+            lines.into_iter().partition(|line| line.iter().any(|other| touch(segment, other)));
+        lines = apart;
+        lines.push(with.into_iter().flatten().chain([*segment]).collect());
+    }
+    lines
+}
+
 type Corner = (Point, f64);
 
 fn edges(triangle: &[Corner; 3]) -> impl Iterator<Item = (Corner, Corner)> {

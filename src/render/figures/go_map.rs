@@ -3,7 +3,7 @@
 use super::Figure;
 use super::axis::Axis;
 use super::chart::{Chart, GREEN, INK, ORANGE, VERMILLION};
-use super::contour::Field;
+use super::contour::{self, Field};
 use super::key::Swatch;
 use crate::findings::known::{GoAnswer, GoMap};
 use crate::numerics::interval::Estimate;
@@ -77,9 +77,17 @@ pub(super) fn figure(map: &GoMap) -> Option<Figure> {
         let segments = deviates.contour(normal::quantile(p));
         chart.contour(&segments, INK, if k == 0 { 1.8 } else { 1.0 });
         let wanted = y0 + (y1 - y0) * (0.85 - 0.25 * k as f64);
-        let ends = segments.iter().map(|segment| segment[0]);
-        let place = ends.min_by(|a, b| (a.1 - wanted).abs().total_cmp(&(b.1 - wanted).abs()));
-        notes.extend(place.map(|place| (place, probability(p))));
+        let near = (1e-6 * (x1 - x0), 1e-6 * (y1 - y0));
+        for line in contour::lines(&segments, near) {
+            // Clear of the study's own line, if the contour leads away from it.
+            let clear = |at: &(f64, f64)| present.is_none_or(|v| (at.0 - v).abs() > 2.0 * wide);
+            let ends = || line.iter().map(|segment| segment[0]);
+            let closest = |a: &(f64, f64), b: &(f64, f64)| {
+                (a.1 - wanted).abs().total_cmp(&(b.1 - wanted).abs())
+            };
+            let place = ends().filter(clear).min_by(closest).or_else(|| ends().min_by(closest));
+            notes.extend(place.map(|place| (place, probability(p))));
+        }
     }
     for (place, text) in notes {
         chart.note(place, &text);

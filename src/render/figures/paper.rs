@@ -13,6 +13,9 @@ use crate::units::{Quantity, display, number};
 const POUND_FEET: f64 = 1.0 / (4.448_221_615_260_5 * 0.3048);
 /// The part of the run in which the dynamic solution settles, s.
 const FIRST_SECONDS: f64 = 2.0;
+/// The figure of the fluid's temperature, and the limit that the paper sets it, °F.
+const FLUID_TEMPERATURE: u32 = 8;
+const PAPER_LIMIT_F: f64 = 450.0;
 
 /// What figures 5 to 9 show: number, file, title, label, reading.
 type Curve = (u32, &'static str, &'static str, String, fn(&Sample) -> f64);
@@ -31,7 +34,7 @@ pub fn paper_figures(runs: &PaperRuns) -> Vec<Figure> {
             display(Quantity::Power).shown(s.observation[3])
         }),
         (
-            8,
+            FLUID_TEMPERATURE,
             "fluid-temperature",
             "Fluid temperature",
             label("fluid temperature", Quantity::Temperature),
@@ -89,11 +92,16 @@ fn course(runs: &PaperRuns, (place, name, title, label, read): Curve) -> Option<
     let (first, last) = (points.first()?, points.last()?);
     let top = points.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let low = points.iter().map(|p| p.1).fold(0.0, f64::min);
+    let limit = (place == FLUID_TEMPERATURE).then_some(PAPER_LIMIT_F);
+    let high = limit.unwrap_or(top.1).max(top.1);
     let name = format!("figure-{place}-{name}");
     let x = Axis::linear("time since release (s)", 0.0, last.0);
-    let y = Axis::linear(label, low, top.1 + 0.06 * (top.1 - low));
+    let y = Axis::linear(label, low, high + 0.06 * (high - low));
     let mut chart = Chart::new(&name, HEIGHT, &x, &y, Vec::new(), false);
     chart.line(&points, BLUE, 2.2, false);
+    if let Some(limit) = limit {
+        chart.horizontal_limit(limit, &format!("limit {limit} °F"));
+    }
     let caption = format!(
         "From {} at release, at most {} after {} s, to {} at the end.",
         number(first.1, 4),
