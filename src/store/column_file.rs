@@ -51,8 +51,11 @@ pub fn read_number_columns(path: &Path) -> Result<NumberColumns, String> {
 /// Names and values of columns.
 pub type NumberColumns = Vec<(String, Vec<Option<f64>>)>;
 
-/// Every column by name, with its values where they are numbers.
-fn read_columns(path: &Path) -> Result<Vec<(String, Option<Vec<Option<f64>>>)>, String> {
+/// A column by name, with its values where they are numbers.
+type AnyColumn = (String, Option<Vec<Option<f64>>>);
+
+/// Every column of a Parquet file.
+fn read_columns(path: &Path) -> Result<Vec<AnyColumn>, String> {
     let file = File::open(path).map_err(|reason| reason.to_string())?;
     damage::read(|| {
         let frame = ParquetReader::new(file).finish()?;

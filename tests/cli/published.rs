@@ -1,7 +1,7 @@
-//! The published study in `reports/habe/` and the report beside it are of this version.
+//! The published studies in `reports/habe/` and `reports/calibrated/` and the reports beside them are of this version.
 //!
 //! To publish anew: `cargo run --release -- run reports/habe/study.toml --out runs/published`, and copy
-//! from `runs/published/` what is published in `reports/habe/`.
+//! from `runs/published/` what is published in `reports/habe/`; likewise `reports/calibrated/`.
 
 use super::program::{Answer, Place, program};
 use std::path::{Path, PathBuf};
@@ -26,11 +26,21 @@ fn files_below(directory: &Path) -> Vec<PathBuf> {
 
 #[test]
 fn regression_the_published_report_is_what_this_version_writes() {
+    is_what_this_version_writes("habe");
+}
+
+#[test]
+fn regression_the_published_report_of_the_calibrated_brake_is_what_this_version_writes() {
+    is_what_this_version_writes("calibrated");
+}
+
+fn is_what_this_version_writes(name: &str) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let published = root.join("reports/habe");
-    let place = Place::new("published");
+    let published = root.join("reports").join(name);
+    let place = Place::new(&format!("published-{name}"));
     let out = place.at("run");
-    let arguments = ["run", "reports/habe/study.toml", "--quiet", "--out", &out];
+    let study = format!("reports/{name}/study.toml");
+    let arguments = ["run", &study, "--quiet", "--out", &out];
     let run = program().args(arguments).current_dir(root).output().expect("the program starts");
     Answer::of(run).ended_with(3);
     let files = files_below(&published);
@@ -38,7 +48,7 @@ fn regression_the_published_report_is_what_this_version_writes() {
         files.iter().filter(|file| file.as_path() != Path::new("study.toml")).collect();
     assert!(
         reports.iter().any(|file| file.as_path() == Path::new("report.md")),
-        "no report is published in reports/habe/"
+        "no report is published in reports/{name}/"
     );
     for file in reports {
         let written = std::fs::read(place.path().join("run").join(file))
@@ -46,7 +56,7 @@ fn regression_the_published_report_is_what_this_version_writes() {
         let kept = std::fs::read(published.join(file)).expect("a published file");
         assert!(
             written == kept,
-            "reports/habe/{} is not what this version writes: see the head of this file",
+            "reports/{name}/{} is not what this version writes: see the head of this file",
             file.display()
         );
     }

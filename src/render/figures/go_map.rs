@@ -72,20 +72,31 @@ pub(super) fn figure(map: &GoMap) -> Option<Figure> {
         share.map_or(f64::NAN, |p| normal::quantile((p * n + 0.5) / (n + 1.0)))
     });
     let levels = map.allowed.iter().chain(CONTOURS.iter().filter(|p| map.allowed != Some(**p)));
-    let mut notes = Vec::new();
+    let mut notes: Vec<((f64, f64), String)> = Vec::new();
     for (k, &p) in levels.enumerate() {
         let segments = deviates.contour(normal::quantile(p));
         chart.contour(&segments, INK, if k == 0 { 1.8 } else { 1.0 });
         let wanted = y0 + (y1 - y0) * (0.85 - 0.25 * k as f64);
         let near = (1e-6 * (x1 - x0), 1e-6 * (y1 - y0));
-        for line in contour::lines(&segments, near) {
-            // Clear of the study's own line, if the contour leads away from it.
-            let clear = |at: &(f64, f64)| present.is_none_or(|v| (at.0 - v).abs() > 2.0 * wide);
+        // The longest first: a short line whose label would stand on another's goes without.
+        let mut lines = contour::lines(&segments, near);
+        lines.sort_by_key(|line| std::cmp::Reverse(line.len()));
+        for (place, line) in lines.iter().enumerate() {
+            let longest = place == 0;
+            let apart = |at: &(f64, f64), other: &(f64, f64)| {
+                (at.0 - other.0).abs() > 0.14 * (x1 - x0)
+                    || (at.1 - other.1).abs() > 0.07 * (y1 - y0)
+            };
+            let clear = |at: &(f64, f64)| {
+                present.is_none_or(|v| (at.0 - v).abs() > 2.0 * wide)
+                    && notes.iter().all(|(other, _)| apart(at, other))
+            };
             let ends = || line.iter().map(|segment| segment[0]);
             let closest = |a: &(f64, f64), b: &(f64, f64)| {
                 (a.1 - wanted).abs().total_cmp(&(b.1 - wanted).abs())
             };
-            let place = ends().filter(clear).min_by(closest).or_else(|| ends().min_by(closest));
+            let clear_place = ends().filter(clear).min_by(closest);
+            let place = clear_place.or_else(|| ends().filter(|_| longest).min_by(closest));
             notes.extend(place.map(|place| (place, probability(p))));
         }
     }
