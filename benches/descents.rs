@@ -7,6 +7,7 @@
 //! run, with the floating-point operations of a step attempt counted once by an instrumented lane type.
 
 use std::hint::black_box;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use reeldown::descent::vector::{Counts, InstructionSet, Settings, descend, descend_with};
@@ -18,6 +19,8 @@ mod members;
 
 const MEMBERS: usize = 1024;
 const TURNS: usize = 40;
+/// Batches that one thread, or two, compute in a turn.
+const BATCHES: usize = 32;
 
 /// Additions, multiplications, divisions and roots of a step attempt, a fused multiply-add being two.
 const DYNAMIC_OPERATIONS: f64 = 1890.0;
@@ -75,14 +78,16 @@ fn main() {
                     threads: 1.0,
                 });
             }
-            let batch = &shuffled;
-            variants.push(Variant {
-                name: format!("{label} two threads"),
-                members: MEMBERS,
-                run: Box::new(move || two_threads(model, &settings, batch)),
-                operations_per_attempt: operations,
-                threads: 2.0,
-            });
+            for threads in [1, 2] {
+                let batch = &shuffled;
+                variants.push(Variant {
+                    name: format!("{label} {BATCHES} batches, {threads} thr."),
+                    members: BATCHES * MEMBERS,
+                    run: Box::new(move || batches(threads, model, &settings, batch)),
+                    operations_per_attempt: operations,
+                    threads: threads as f64,
+                });
+            }
         }
         let few = &shuffled[..4];
         variants.push(Variant {
@@ -131,17 +136,26 @@ fn main() {
     }
 }
 
-fn two_threads(model: Model, settings: &Settings, batch: &[Coefficients<f64>]) -> Counts {
-    let halves = batch.split_at(batch.len() / 2);
-    let half = |part: &[Coefficients<f64>]| {
-        let mut out = results(part.len());
-        descend(model, settings, part, black_box(&mut out))
+/// The batch, [`BATCHES`] times, by threads that take the next one as they finish: as an ensemble is computed.
+fn batches(
+    threads: usize,
+    model: Model,
+    settings: &Settings,
+    batch: &[Coefficients<f64>],
+) -> Counts {
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let (mut out, mut counts) = (results(batch.len()), Counts::default());
+        while next.fetch_add(1, Ordering::Relaxed) < BATCHES {
+            counts += descend(model, settings, batch, black_box(&mut out));
+        }
+        counts
     };
     std::thread::scope(|scope| {
-        let other = scope.spawn(|| half(halves.1));
-        let mut counts = half(halves.0);
-        if let Ok(more) = other.join() {
-            counts += more;
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
+        let mut counts = work();
+        for other in others {
+            counts += other.join().expect("a thread of the bench");
         }
         counts
     })
