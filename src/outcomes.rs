@@ -31,24 +31,15 @@ impl OutcomeTable {
         }
     }
 
-    /// Consecutive tables as one, from sample `first` on.
+    /// Consecutive tables as one, from sample `first` on; with their inputs, if they have this many.
     pub fn joined(first: u64, inputs: usize, parts: &[OutcomeTable]) -> Self {
-        let rows = parts.iter().map(OutcomeTable::rows).sum();
-        let mut whole = OutcomeTable::new(first, rows, inputs);
-        let mut at = 0;
-        for part in parts {
-            let end = at + part.rows();
-            for j in 0..inputs {
-                whole.inputs.column_mut(j)[at..end].copy_from_slice(part.inputs.column(j));
-            }
-            for j in 0..OUTCOME_COUNT {
-                whole.outcomes.column_mut(j)[at..end].copy_from_slice(part.outcomes.column(j));
-            }
-            whole.deployed[at..end].copy_from_slice(&part.deployed);
-            whole.faults[at..end].copy_from_slice(&part.faults);
-            at = end;
+        OutcomeTable {
+            first,
+            inputs: Columns::joined(inputs, parts.iter().map(|part| &part.inputs)),
+            outcomes: Columns::joined(OUTCOME_COUNT, parts.iter().map(|part| &part.outcomes)),
+            deployed: parts.iter().map(|part| &part.deployed[..]).collect::<Vec<_>>().concat(),
+            faults: parts.iter().map(|part| &part.faults[..]).collect::<Vec<_>>().concat(),
         }
-        whole
     }
 
     /// Number of samples.

@@ -72,7 +72,7 @@ impl<'a> Ensemble<'a> {
         design
     }
 
-    /// Samples `range` of a design, in one table, in order; fewer if `progress` is asked to stop.
+    /// Samples `range` of a design, in consecutive tables; fewer if `progress` is asked to stop.
     ///
     /// # Errors
     /// If the range lies beyond the design.
@@ -81,7 +81,7 @@ impl<'a> Ensemble<'a> {
         sampler: &Sampler,
         range: Range<u64>,
         progress: &Progress,
-    ) -> Result<OutcomeTable> {
+    ) -> Result<Vec<OutcomeTable>> {
         let rows = (range.end - range.start) as usize;
         let work = Work { first: range.start, rows, keep_inputs: true, may_stop: true };
         self.batches(&work, progress, |start, inputs| {
@@ -126,8 +126,9 @@ impl<'a> Ensemble<'a> {
                 fill(start, inputs);
                 Ok(())
             });
+        let inputs = if work.keep_inputs { self.dimension() } else { 0 };
         match filled {
-            Ok(table) => table,
+            Ok(parts) => OutcomeTable::joined(work.first, inputs, &parts),
             Err(never) => match never {},
         }
     }
@@ -138,7 +139,7 @@ impl<'a> Ensemble<'a> {
         work: &Work,
         progress: &Progress,
         fill: impl Fn(usize, &mut Columns) -> std::result::Result<(), E> + Sync,
-    ) -> std::result::Result<OutcomeTable, E> {
+    ) -> std::result::Result<Vec<OutcomeTable>, E> {
         let starts: Vec<usize> = (0..work.rows).step_by(BATCH).collect();
         let batches: Vec<Option<OutcomeTable>> = starts
             .par_iter()
@@ -158,9 +159,7 @@ impl<'a> Ensemble<'a> {
                 Ok(Some(table))
             })
             .collect::<std::result::Result<_, E>>()?;
-        let complete: Vec<OutcomeTable> = batches.into_iter().map_while(|batch| batch).collect();
-        let inputs = if work.keep_inputs { self.dimension() } else { 0 };
-        Ok(OutcomeTable::joined(work.first, inputs, &complete))
+        Ok(batches.into_iter().map_while(|batch| batch).collect())
     }
 
     /// Integrates the rows of a table from its inputs. An impossible draw is a fault of its row.

@@ -117,16 +117,24 @@ pub fn run_until(
 ) -> Result<u64> {
     let sampler = sampler(study)?;
     let ensemble = Ensemble::new(study);
-    let (sender, receiver) = std::sync::mpsc::sync_channel::<OutcomeTable>(1);
+    let inputs = ensemble.dimension();
+    let (sender, receiver) = std::sync::mpsc::sync_channel::<(u64, Vec<OutcomeTable>)>(1);
     std::thread::scope(|scope| {
-        let writer = scope.spawn(move || receiver.into_iter().try_for_each(sink));
+        // What one thread must do for a row group, waiting for the disk included, is done beside the next one's
+        // descents.
+        let writer = scope.spawn(move || {
+            let mut groups = receiver.into_iter();
+            groups.try_for_each(|(first, parts)| sink(OutcomeTable::joined(first, inputs, &parts)))
+        });
         while !looks.over() && !progress.stopping() {
             let next = looks.taken();
             let end = ((next / ROW_GROUP + 1) * ROW_GROUP).min(looks.next());
-            let table = ensemble.samples(&sampler, next..end, progress)?;
-            looks.take(&table)?;
+            let parts = ensemble.samples(&sampler, next..end, progress)?;
+            for part in &parts {
+                looks.take(part)?;
+            }
             // A receiver that is gone has failed: its error is returned below.
-            if table.rows() > 0 && sender.send(table).is_err() {
+            if !parts.is_empty() && sender.send((next, parts)).is_err() {
                 break;
             }
         }

@@ -30,6 +30,18 @@ impl Columns {
         table
     }
 
+    /// The rows of tables of `columns` coordinates, one table after the other.
+    pub fn joined<'a>(columns: usize, parts: impl Iterator<Item = &'a Columns> + Clone) -> Self {
+        let rows = parts.clone().map(Columns::rows).sum();
+        let mut data = Vec::with_capacity(rows * columns);
+        for j in 0..columns {
+            for part in parts.clone() {
+                data.extend_from_slice(part.column(j));
+            }
+        }
+        Columns { rows, columns, data }
+    }
+
     /// Number of rows: points.
     pub fn rows(&self) -> usize {
         self.rows

@@ -12,7 +12,13 @@ pub struct AtomicFile {
     path: PathBuf,
     part: PathBuf,
     writer: Option<BufWriter<File>>,
+    /// Bytes written since the disk was last waited for.
+    pending: usize,
 }
+
+/// Bytes after which the disk is waited for. A large file is then on the disk bit by bit, beside whatever other
+/// threads compute, instead of all at once when it is committed and everybody waits.
+const SYNC_BYTES: usize = 16 << 20;
 
 impl AtomicFile {
     /// Starts a file; its directory is made if it is not there.
@@ -35,7 +41,12 @@ impl AtomicFile {
             let help = "name another place with --out, or make it writable";
             Error::file(&part, "write", reason, help)
         })?;
-        Ok(AtomicFile { path: path.to_owned(), part, writer: Some(BufWriter::new(file)) })
+        Ok(AtomicFile {
+            path: path.to_owned(),
+            part,
+            writer: Some(BufWriter::new(file)),
+            pending: 0,
+        })
     }
 
     /// The final name.
@@ -60,10 +71,17 @@ impl AtomicFile {
 
 impl Write for AtomicFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match &mut self.writer {
-            Some(writer) => writer.write(bytes),
-            None => Err(io::Error::other("the file is closed")),
+        let Some(writer) = &mut self.writer else {
+            return Err(io::Error::other("the file is closed"));
+        };
+        let written = writer.write(bytes)?;
+        self.pending += written;
+        if self.pending >= SYNC_BYTES {
+            writer.flush()?;
+            writer.get_ref().sync_data()?;
+            self.pending = 0;
         }
+        Ok(written)
     }
 
     fn flush(&mut self) -> io::Result<()> {

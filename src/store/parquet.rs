@@ -2,13 +2,12 @@
 
 use super::atomic::{AtomicFile, cannot_write};
 use crate::error::Result;
-use polars::prelude::{
-    BatchedWriter, Column, DataFrame, KeyValueMetadata, ParquetCompression, ParquetWriter,
-    PolarsResult, Schema,
+use polars::prelude::{Column, CompatLevel, DataFrame, PolarsResult, Schema, SchemaExt};
+use polars_parquet::write::{
+    CompressionOptions, Encoding, FileWriter, KeyValue, StatisticsOptions, Version, WriteOptions,
+    row_group_iter, schema_to_metadata_key,
 };
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
 
 /// One column of a small table.
 #[derive(Debug, Clone)]
@@ -31,58 +30,62 @@ impl Field {
     }
 }
 
+/// How tables are written. Sampled doubles do not compress, nor do they repeat: pages are left as they are, without
+/// compression or a dictionary. Nor does the smallest and largest of tens of thousands of draws exclude a row
+/// group from anybody's query. polars' own writer would look for both in every column, which cost as much again.
+const OPTIONS: WriteOptions = WriteOptions {
+    statistics: StatisticsOptions {
+        min_value: false,
+        max_value: false,
+        distinct_count: false,
+        null_count: true,
+        binary_statistics_truncate_length: None,
+    },
+    version: Version::V1,
+    compression: CompressionOptions::Uncompressed,
+    data_page_size: None,
+};
+
 /// A Parquet file under way.
 pub(super) struct TableWriter {
-    inner: BatchedWriter<SharedFile>,
-    file: SharedFile,
+    inner: FileWriter<AtomicFile>,
+    metadata: Vec<(String, String)>,
     path: PathBuf,
-}
-
-/// polars keeps what it writes to; the other handle ends the file.
-#[derive(Clone)]
-struct SharedFile(Arc<Mutex<AtomicFile>>);
-
-impl Write for SharedFile {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).write(bytes)
-    }
-    fn flush(&mut self) -> io::Result<()> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).flush()
-    }
 }
 
 impl TableWriter {
     /// Starts a table.
-    ///
-    /// Sampled doubles do not compress, so the pages are left as they are: that is several times faster
-    /// to write, and every reader reads it.
     pub(super) fn create(
         path: &Path,
         schema: &Schema,
         metadata: Vec<(String, String)>,
     ) -> Result<Self> {
-        let file = SharedFile(Arc::new(Mutex::new(AtomicFile::create(path)?)));
-        let inner = ParquetWriter::new(file.clone())
-            .with_compression(ParquetCompression::Uncompressed)
-            .with_key_value_metadata(Some(KeyValueMetadata::from_static(metadata)))
-            .batched(schema)
+        let schema = schema.to_arrow(CompatLevel::newest());
+        let inner = FileWriter::try_new(AtomicFile::create(path)?, schema, OPTIONS)
             .map_err(|reason| cannot_write(path, reason))?;
-        Ok(TableWriter { inner, file, path: path.to_owned() })
+        Ok(TableWriter { inner, metadata, path: path.to_owned() })
     }
 
     /// Writes a row group.
     pub(super) fn write(&mut self, frame: &DataFrame) -> Result<()> {
-        self.inner.write_batch(frame).map_err(|reason| cannot_write(&self.path, reason))
+        for batch in frame.iter_chunks(CompatLevel::newest(), false) {
+            let fields = self.inner.parquet_schema().fields().to_vec();
+            let plain = vec![vec![Encoding::Plain]; fields.len()];
+            let rows = batch.len() as u64;
+            let group = row_group_iter(batch, plain.into(), fields, OPTIONS);
+            self.inner.write(rows, group).map_err(|reason| cannot_write(&self.path, reason))?;
+        }
+        Ok(())
     }
 
     /// Writes the footer and gives the file its name.
-    pub(super) fn finish(self) -> Result<()> {
-        self.inner.finish().map_err(|reason| cannot_write(&self.path, reason))?;
-        drop(self.inner);
-        match Arc::into_inner(self.file.0) {
-            Some(file) => file.into_inner().unwrap_or_else(PoisonError::into_inner).commit(),
-            None => Err(cannot_write(&self.path, "the file is still in use")),
-        }
+    pub(super) fn finish(mut self) -> Result<()> {
+        let own =
+            self.metadata.into_iter().map(|(key, value)| KeyValue { key, value: Some(value) });
+        let entries = std::iter::once(schema_to_metadata_key(self.inner.schema())).chain(own);
+        let entries = entries.collect();
+        self.inner.end(Some(entries)).map_err(|reason| cannot_write(&self.path, reason))?;
+        self.inner.into_inner().commit()
     }
 }
 
