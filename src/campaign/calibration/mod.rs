@@ -63,6 +63,9 @@ pub struct Calibration<'a> {
     pub next: Option<NextTests>,
 }
 
+/// Brakes of the prior that a run's level is held against.
+const SCREENED_BRAKES: usize = 400;
+
 /// Looks at runs before anything is believed of them: their channels' own course, and their level against what the card
 /// allows.
 ///
@@ -72,7 +75,7 @@ pub fn screen(study: &Study, runs: &[&MeasuredRun], options: &Options) -> Result
     let planned = plan::planned(runs, study, options)?;
     let noise = plan::noise(&planned, options);
     let likelihood = RigLikelihood::new(study, planned, noise);
-    let prior = risk::prior_brakes(study);
+    let prior = risk::prior_brakes(study, SCREENED_BRAKES)?;
     let mut found = Vec::new();
     for (run, planned) in runs.iter().zip(likelihood.runs()) {
         let initial = vec![planned.initial.mean_k; prior.rows()];
@@ -165,7 +168,7 @@ pub fn calibrate<'a>(
     let (risk, next) = match study.limits.is_empty() {
         true => (None, None),
         false => {
-            let before = risk::risk(study, &risk::prior_brakes(study), progress)?;
+            let before = risk::risk(study, &risk::prior_brakes(study, risk::BRAKES)?, progress)?;
             let step = (draws.len() / risk::BRAKES).max(1);
             let chosen: Vec<Vec<f64>> =
                 draws.iter().step_by(step).take(risk::BRAKES).cloned().collect();

@@ -12,15 +12,13 @@ use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
 use crate::numerics::special::normal;
 use crate::sampling::{Design, Sampler};
-use crate::streams::{Purpose, standard_normal, stream};
+use crate::streams::Purpose;
 use crate::study::Study;
 
 /// Brakes drawn.
-pub const BRAKES: usize = 400;
+pub const BRAKES: usize = 2000;
 /// Flights of each.
 pub const FLIGHTS: usize = 256;
-/// Stream of brakes, beyond the replicates'.
-const BRAKE_STREAM: u64 = 3 << 32;
 
 /// The probability of a breach over brakes and flights.
 #[derive(Debug, Clone)]
@@ -37,40 +35,30 @@ pub struct Risk {
     pub own_variance: f64,
 }
 
-/// Rows of the study's prior over all inputs.
-///
-/// # Errors
-/// None but the study's.
-pub fn prior_draws(study: &Study, rows: usize, index: u64) -> Columns {
+/// Draws of every input, spread evenly over each (a Latin hypercube).
+fn spread(study: &Study, rows: usize, purpose: Purpose) -> Result<Columns> {
     let n = study.inputs.len();
-    let mut stream = stream(study.sampling.seed, Purpose::Calibration, index);
-    let mut z = Columns::new(rows, n);
-    for k in 0..rows {
-        for j in 0..n {
-            z.set(k, j, standard_normal(&mut stream));
-        }
-    }
-    let mut inputs = Columns::default();
-    study.joint.from_standard_normal(&z, &mut inputs);
-    inputs
-}
-
-/// [`FLIGHTS`] flights, spread evenly over what varies (a Latin hypercube): all brakes share them, so that what
-/// a plain sample of so few were off by, every brake would be.
-fn flights(study: &Study) -> Result<Columns> {
-    let n = study.inputs.len();
-    let (seed, count) = (study.sampling.seed, FLIGHTS as u64);
-    let sampler = Sampler::new(Design::LatinHypercube, n, count, 1, seed, Purpose::Calibration)?;
-    let mut uniforms = Columns::new(FLIGHTS, n);
+    let seed = study.sampling.seed;
+    let sampler = Sampler::new(Design::LatinHypercube, n, rows as u64, 1, seed, purpose)?;
+    let mut uniforms = Columns::new(rows, n);
     sampler.fill(0, &mut uniforms)?;
-    let mut inputs = Columns::new(FLIGHTS, n);
+    let mut inputs = Columns::new(rows, n);
     study.joint.from_uniform(&uniforms, &mut inputs);
     Ok(inputs)
 }
 
-/// [`BRAKES`] brakes of the prior.
-pub fn prior_brakes(study: &Study) -> Columns {
-    prior_draws(study, BRAKES, BRAKE_STREAM)
+/// [`FLIGHTS`] flights, spread evenly over what varies: all brakes share them, so that what a plain sample of so few
+/// were off by, every brake would be.
+fn flights(study: &Study) -> Result<Columns> {
+    spread(study, FLIGHTS, Purpose::Calibration)
+}
+
+/// Brakes of the prior, spread evenly over what is not known of them.
+///
+/// # Errors
+/// If the study has too many inputs for a design.
+pub fn prior_brakes(study: &Study, brakes: usize) -> Result<Columns> {
+    spread(study, brakes, Purpose::Unknown)
 }
 
 /// The risk over brakes: rows of inputs in SI, of which the hardware's columns count.

@@ -194,7 +194,7 @@ pub fn calibration(
     command: String,
 ) -> Result<CalibrationFinding> {
     let (laws, correlations) = laws::laws(study, found)?;
-    let (parameters, nuisances) = parameters::parameters(study, found);
+    let (parameters, nuisances) = parameters::parameters(study, found)?;
     let count = found.likelihood.runs().len();
     let planned = found.likelihood.runs().iter().chain(&found.held_out);
     let run_findings = planned.zip(runs.iter().zip(files)).enumerate();

@@ -3,6 +3,7 @@
 use crate::calibration::posterior::mean_variance;
 use crate::campaign::calibration::predictive::quantile;
 use crate::campaign::calibration::{Calibration, Coordinate, SensorError, is_hardware, risk};
+use crate::error::Result;
 use crate::numerics::columns::Columns;
 use crate::numerics::elementary::exp;
 use crate::physics::{Coefficients, Parameter};
@@ -63,11 +64,14 @@ fn variance_in_normal_space(found: &Calibration<'_>, j: usize) -> f64 {
 }
 
 /// The card's hardware inputs with the brake's strength, and everything else that was sampled.
+///
+/// # Errors
+/// If the study has too many inputs for a design.
 pub(super) fn parameters(
     study: &Study,
     found: &Calibration<'_>,
-) -> (Vec<ParameterFinding>, Vec<ParameterFinding>) {
-    let mut rows = vec![strength(study, found)];
+) -> Result<(Vec<ParameterFinding>, Vec<ParameterFinding>)> {
+    let mut rows = vec![strength(study, found)?];
     let hardware: Vec<usize> = (0..study.inputs.len())
         .filter(|&j| is_hardware(study.inputs[j].target.parameter))
         .collect();
@@ -99,12 +103,12 @@ pub(super) fn parameters(
         let prior = input.marginal.moments();
         rows.push(summary(name, (members.len(), unit), prior, &values, Some(learned)));
     }
-    (rows, nuisances(found))
+    Ok((rows, nuisances(found)))
 }
 
 /// Torque per reel speed and thickening of the fluid, relative to the nominal design: what viscosity, shear factor and all
 /// gaps act through.
-fn strength(study: &Study, found: &Calibration<'_>) -> ParameterFinding {
+fn strength(study: &Study, found: &Calibration<'_>) -> Result<ParameterFinding> {
     let of = |design: &crate::physics::Design| Coefficients::new(design).fluid.torque_per_speed_nms;
     let nominal = of(&study.design);
     let values = |inputs: &Columns| -> Vec<f64> {
@@ -118,10 +122,10 @@ fn strength(study: &Study, found: &Calibration<'_>) -> ParameterFinding {
             })
             .collect()
     };
-    let before = mean_variance(&values(&risk::prior_brakes(study)));
+    let before = mean_variance(&values(&risk::prior_brakes(study, risk::BRAKES)?));
     let prior = (before.0, before.1.sqrt());
     let name = "brake strength (torque per speed, over the nominal)".to_owned();
-    summary(name, (1, ""), prior, &values(&found.inputs), None)
+    Ok(summary(name, (1, ""), prior, &values(&found.inputs), None))
 }
 
 fn nuisances(found: &Calibration<'_>) -> Vec<ParameterFinding> {
