@@ -19,6 +19,7 @@ pub fn sweep_terminal(sweep: &SweepFinding) -> String {
         text += &format!("{}\n", super::terminal::wrapped(&line.replace('`', "")));
     }
     let (header, rows) = rows(sweep);
+    let header: Vec<String> = header.iter().map(|words| in_two_lines(words)).collect();
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
     let left_out = rows.len() > SHOWN_ROWS;
     let kept = shown(rows.len());
@@ -112,6 +113,17 @@ fn meanings(sweep: &SweepFinding) -> Vec<String> {
         )
     };
     sweep.paths.iter().map(line).collect()
+}
+
+/// A column's header, broken at the first space beyond its middle, or else the last before it, if it is long: the
+/// columns are narrow.
+fn in_two_lines(words: &str) -> String {
+    let (before, beyond) = words.split_at(words.len() / 2);
+    let at = beyond.find(' ').map(|at| before.len() + at).or_else(|| before.rfind(' '));
+    match at {
+        Some(at) if words.len() > 16 => format!("{}\n{}", &words[..at], &words[at + 1..]),
+        _ => words.to_owned(),
+    }
 }
 
 /// The table: value by value of one path, or the best value for each value of the other.
