@@ -11,7 +11,7 @@ mod repetitions;
 
 use reeldown::numerics::special::{binomial, chi_squared as chi};
 use reeldown::study::Study;
-use repetitions::{Repetition, chi_squared, from_prior, of_campaign, problem};
+use repetitions::{Repetition, chi_squared, from_prior, of_campaign, problem, whole_plan};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -53,11 +53,12 @@ fn write() -> Result<(), String> {
             })
             .collect()
     };
-    let prior = run("prior", &|k| from_prior(&study, &problem, k));
+    let prior = run("prior", &|k| from_prior(&study, &problem, k, whole_plan));
     let campaign = run("campaign", &|k| of_campaign(&study, k));
     let mut text = format!(
         "# Calibration certificate\n\nMade by `cargo run --release --example calibration_certificate -- --repetitions \
-         {repetitions}`; version {}. Each repetition is a posterior of 2 replicates of 400 particles.\n\n\
+         {repetitions}`; version {}. A posterior of a truth drawn from the prior is \
+         sampled as `calibrate` samples, by 4 replicates of 1000 particles; one of the campaign by 2 of 400.\n\n\
          | truths | repetitions | truth in the 95 % region | share, exact 95 % interval | repetitions with a failed gate |\n\
          | --- | ---: | ---: | --- | ---: |\n",
         env!("CARGO_PKG_VERSION")
@@ -78,7 +79,7 @@ fn write() -> Result<(), String> {
     }
     text += &format!(
         "\nThe 95 % region is of the {} hardware parameters together: the truth is inside if it is no farther from the \
-         draws' mean, in their own covariance, than 95 % of the draws. For truths drawn from the prior the share must be \
+         mean of half the replicates' draws, in their covariance, than 95 % of the other half's. For truths drawn from the prior the share must be \
          95 %; for a single truth a Bayesian region has no such duty.\n\n\
          ## Ranks\n\nSimulation-based calibration: the truth's rank among the draws is uniform if the posterior is right. \
          Chi-squared over {BINS} bins; of {} coordinates tested, about one in twenty falls below 0.05 by chance.\n\n\

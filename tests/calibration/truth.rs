@@ -1,7 +1,7 @@
 //! Calibrations of made-up data whose truth is known: the short form of `examples/calibration_certificate.rs`.
 
 use crate::campaign;
-use crate::repetitions::{chi_squared, from_prior, of_campaign, problem};
+use crate::repetitions::{chi_squared, from_prior, of_campaign, problem, small_plan};
 use reeldown::calibration::{LeastSquares, LogLikelihood};
 use reeldown::numerics::columns::Columns;
 use reeldown::numerics::special::{binomial, chi_squared as chi};
@@ -14,7 +14,8 @@ const SHORT: u64 = 6;
 fn analytic_ranks_of_truths_from_the_prior_are_uniform_and_regions_hold_them() {
     let study = Study::load(None, &[]).expect("the embedded study");
     let problem = problem(&study);
-    let all: Vec<_> = (0..SHORT).map(|k| from_prior(&study, &problem, 100 + k)).collect();
+    let all: Vec<_> =
+        (0..SHORT).map(|k| from_prior(&study, &problem, 100 + k, small_plan)).collect();
     let inside = all.iter().filter(|repetition| repetition.inside).count() as u64;
     // Fewer than this many of them inside has less than one chance in a thousand.
     let least = (0..=SHORT).find(|&k| binomial::cdf(k, SHORT, 0.95) > 1e-3).unwrap_or(0);
