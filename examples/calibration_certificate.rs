@@ -9,9 +9,10 @@ mod campaign;
 #[path = "../tests/calibration/repetitions.rs"]
 mod repetitions;
 
+use reeldown::calibration::Plan;
 use reeldown::numerics::special::{binomial, chi_squared as chi};
 use reeldown::study::Study;
-use repetitions::{Repetition, chi_squared, from_prior, of_campaign, problem, whole_plan};
+use repetitions::{Repetition, chi_squared, from_prior, of_campaign, problem};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -53,6 +54,7 @@ fn write() -> Result<(), String> {
             })
             .collect()
     };
+    let whole_plan = |seed| Plan { seed, ..Plan::default() };
     let prior = run("prior", &|k| from_prior(&study, &problem, k, whole_plan));
     let campaign = run("campaign", &|k| of_campaign(&study, k));
     let mut text = format!(

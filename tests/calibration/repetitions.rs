@@ -23,11 +23,6 @@ pub struct Repetition {
     pub failures: Vec<String>,
 }
 
-/// What a calibration takes.
-pub fn whole_plan(seed: u64) -> Plan {
-    Plan { seed, ..Plan::default() }
-}
-
 /// Fewer particles and replicates than a calibration takes.
 pub fn small_plan(seed: u64) -> Plan {
     Plan { particles: 400, replicates: 2, seed, ..Plan::default() }
