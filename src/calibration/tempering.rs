@@ -59,7 +59,7 @@ impl Default for Plan {
             replicates: 4,
             seed: 1993,
             forgotten: 0.2,
-            forgotten_at_last: 0.15,
+            forgotten_at_last: 0.1,
             least_last_moves: 15,
             most_moves: 120,
         }
@@ -93,6 +93,12 @@ impl Start {
         Ok(Start { normal: Normal::of(&replicate.particles, &weights, WIDENED)? })
     }
 }
+
+/// The same for the law about which particles move. One that is as wide as the particles seldom proposes the tails that a
+/// few hundred particles in thirty dimensions lack after a resampling: on a linear-normal problem of 34 dimensions the
+/// draws of 400 particles then had 0.966 of the posterior's squared distance, with this and `forgotten_at_last` 0.1 they
+/// have 1.00, and 1.01 of 1000.
+const REFERENCE_WIDENED: f64 = 1.15;
 
 /// One replicate: equally weighted draws of the posterior.
 #[derive(Debug, Clone)]
@@ -181,7 +187,7 @@ pub fn replicate(
                 "the posterior is not reached from the prior: the data contradicts the card, or one of its units is wrong",
             ));
         }
-        let reference = Normal::of(&cloud.z, &weights, 1.0)?;
+        let reference = Normal::of(&cloud.z, &weights, REFERENCE_WIDENED)?;
         ancestors = cloud.resample(&weights);
         let last = beta >= 1.0;
         let bound = if last { plan.forgotten_at_last } else { plan.forgotten };

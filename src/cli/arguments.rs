@@ -92,7 +92,7 @@ pub(super) enum SchemaKind {
 pub(super) struct StudyArguments {
     /// Study file; without one, the embedded study of the HABE brake
     pub study: Option<PathBuf>,
-    /// Change a value: a design path (initial.temperature="40 °F"), a key of the study
+    /// Change a value: a design path (fluid.nominal_viscosity="105000 cSt"), a key of the study
     /// (limits.time.max="200 s") or of its card (brake.gap.sd="0.002 in")
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub set: Vec<String>,

@@ -66,7 +66,12 @@ pub(super) fn design_value(
             })
             .collect()
     };
-    let best = best_value(&xs, &shares, (sweep.range.lower, sweep.range.upper));
+    let clean = shares(None).iter().any(|&share| share <= 0.0);
+    let best = if clean {
+        Estimate::none(format!("over a part of its range none of {rows} samples breaches a limit"))
+    } else {
+        best_value(&xs, &shares, (sweep.range.lower, sweep.range.upper))
+    };
     // The nearest computed setting stands for P at the best value.
     let near = best.value.and_then(|value| {
         sweep.fine.iter().min_by(|a, b| (a.value - value).abs().total_cmp(&(b.value - value).abs()))

@@ -29,6 +29,8 @@ pub struct TradeFinding {
     pub best: Vec<TighteningFinding>,
     /// The same where the design values are at their best.
     pub best_at_design: Vec<TighteningFinding>,
+    /// The swept setting of each design variable at which those were computed: the one with the fewest breaches, SI.
+    pub at_design: Vec<f64>,
     /// The design values that may move.
     pub design: Vec<DesignValueFinding>,
     /// P(any breach) against the spread and the mean of every factor.
@@ -99,6 +101,7 @@ pub(super) fn trade(
                 samples: 0,
                 base: None,
                 best: Vec::new(),
+                at_design: Vec::new(),
                 best_at_design: Vec::new(),
                 design: Vec::new(),
                 curves: Vec::new(),
@@ -125,27 +128,32 @@ pub(super) fn trade(
                 })
             })
             .collect::<Result<Vec<_>>>()?;
-        // By this sample's own word.
+        // By this sample's own word, and only what it shows to lower P.
+        found.retain(|t| t.difference.interval.interval().is_some_and(|i| i.upper < 0.0));
         let gain = |t: &TighteningFinding| t.difference.value.unwrap_or(0.0);
         found.sort_by(|a, b| gain(a).total_cmp(&gain(b)));
         found.truncate(HEADLINES);
         Ok(found)
     };
-    let best_at_design = match &outcomes.at_best {
-        Some(at_best) => ranked(&at_best.base, &at_best.halved)?,
-        None => Vec::new(),
+    let design: Vec<DesignValueFinding> = outcomes
+        .sweeps
+        .iter()
+        .map(|sweep| design_value(study, outcomes, paired, sweep))
+        .collect::<Result<_>>()?;
+    let (at_design, best_at_design) = match &outcomes.at_best {
+        Some(at_best) if design.iter().all(|found| found.best.value.is_some()) => {
+            (at_best.design.clone(), ranked(&at_best.base, &at_best.halved)?)
+        }
+        _ => (Vec::new(), Vec::new()),
     };
     Ok(TradeFinding {
         none: None,
         samples: outcomes.base.rows() as u64,
         base: Some(paired.probability(&outcomes.base, Event::Any)?),
         best: ranked(&outcomes.headline_base, &outcomes.halved)?,
+        at_design,
         best_at_design,
-        design: outcomes
-            .sweeps
-            .iter()
-            .map(|sweep| design_value(study, outcomes, paired, sweep))
-            .collect::<Result<_>>()?,
+        design,
         curves: curves.into_iter().collect::<Result<_>>()?,
         score_samples: outcomes.score_samples,
         derivatives: derivatives(study, outcomes, paired)?,

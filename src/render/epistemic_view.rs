@@ -69,25 +69,42 @@ fn with_interval(estimate: Option<&Estimate>) -> String {
 }
 
 fn headlines(any: &EpistemicEvent) -> Vec<String> {
+    let mean = with_interval(Some(&any.mean));
+    if let Some(why) = quantile(any, 0.95).and_then(|estimate| estimate.interval.why_none())
+        && quantile(any, 0.95).is_some_and(|estimate| estimate.value.is_none())
+    {
+        return vec![format!(
+            "P(any breach) is {mean} on average; between what bounds it lies given the true constants of this brake \
+             cannot be told: {why}."
+        )];
+    }
     let mut lines = vec![format!(
         "P(any breach) is {} on average; given the true constants of this brake it lies between {} and {} (90 % \
          of our belief).",
-        with_interval(Some(&any.mean)),
+        mean,
         shown(quantile(any, 0.05)),
         shown(quantile(any, 0.95)),
     )];
     if let Some((allowed, belief)) = &any.requirement_met {
+        let is = match (belief.value, belief.interval.why_none()) {
+            (None, Some(why)) => format!("cannot be told: {why}"),
+            _ => format!("is {}", with_interval(Some(belief))),
+        };
         lines.push(format!(
-            "The belief that the requirement is met, P(any breach) at most {}, is {}.",
-            probability(*allowed),
-            with_interval(Some(belief))
+            "The belief that the requirement is met, P(any breach) at most {}, {is}.",
+            probability(*allowed)
         ));
+    }
+    if let [only] = &any.shares[..] {
+        lines.push(format!("The whole band is of `{}`: nothing else is unknown.", only.factor));
+        return lines;
     }
     let leading: Vec<String> = any
         .shares
         .iter()
         .take(3)
         .filter_map(|share| Some((share, share.total.value?)))
+        .filter(|(share, _)| share.total.interval.interval().is_some_and(|i| i.lower > 0.0))
         .filter(|(_, total)| *total >= 0.05)
         .map(|(share, total)| format!("`{}` ({})", share.factor, probability(total.min(1.0))))
         .collect();

@@ -73,6 +73,7 @@ fn with_unit(text: String, quantity: Quantity) -> String {
 /// A probability to three digits, so that the line keeps its length.
 fn share(p: f64) -> String {
     match p {
+        0.0 => "0".to_owned(),
         p if p < 1e-5 => format!("{p:.1e}"),
         p => format!("{} %", number(100.0 * p, 3)),
     }

@@ -138,6 +138,13 @@ fn tightening(finding: &TighteningFinding, begin: &str) -> String {
 
 fn design_value(finding: &DesignValueFinding) -> String {
     let quantity = quantity_of(&finding.path);
+    if finding.best.value.is_none() {
+        let why = finding.best.interval.why_none().unwrap_or("it was not found");
+        return format!(
+            "With nothing tightened, the best `{}` is not resolved: {why}.",
+            finding.path
+        );
+    }
     let best = match (finding.best.value, finding.best.interval.interval()) {
         (Some(x), Some(i)) => {
             format!(
@@ -165,7 +172,11 @@ fn design_value(finding: &DesignValueFinding) -> String {
 pub(super) fn trade(finding: &TradeFinding) -> Trade {
     let best = finding.best.iter().map(|found| tightening(found, ""));
     let best = best.chain(finding.design.iter().map(design_value));
-    let there = finding.best_at_design.iter().map(|found| tightening(found, "There, halving"));
+    let values = finding.design.iter().zip(&finding.at_design);
+    let values: Vec<String> =
+        values.map(|(found, &at)| value(at, quantity_of(&found.path))).collect();
+    let there = format!("At {}, halving", values.join(" and "));
+    let there = finding.best_at_design.iter().map(|found| tightening(found, &there));
     let best = best.chain(there).collect();
     let of = |parameter: &str| -> Vec<&TradeCurve> {
         finding.curves.iter().filter(|curve| curve.parameter == parameter).collect()

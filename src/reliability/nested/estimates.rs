@@ -5,6 +5,10 @@ use crate::error::{Error, Result};
 use crate::numerics::interval::{Earned, Estimate, Interval};
 use crate::numerics::special::{beta, student};
 
+/// Share of the sets below which those that saw an event (or saw it fail to happen) say nothing of the law over all sets:
+/// its quantiles would be drawn as straight lines from the others to them.
+const LEAST_TOLD: f64 = 0.1;
+
 /// Sets of a section below which no interval is given.
 const FEWEST: usize = 5;
 
@@ -162,6 +166,16 @@ pub fn band(halves: &Halves, shares: &[f64], at: &[f64], confidence: f64) -> Res
         (value, belief)
     });
     let differences: f64 = pairs.iter().map(|(a, b)| (a - b) * (a - b)).sum();
+    let happened = pairs.iter().filter(|(a, b)| a + b > 0.0).count();
+    let failed_to = pairs.iter().filter(|(a, b)| a + b < 2.0).count();
+    let too_few = |count: usize| (count as f64) < LEAST_TOLD * sets as f64;
+    let untold = match (too_few(happened), too_few(failed_to)) {
+        (true, _) => Some(format!("it happened with {happened} of {sets} sets of values only")),
+        (_, true) => {
+            Some(format!("with all but {failed_to} of {sets} sets of values it always happened"))
+        }
+        _ => None,
+    };
     Ok(Band {
         mean: estimate(0),
         standard_deviation: estimate(1),
@@ -169,6 +183,9 @@ pub fn band(halves: &Halves, shares: &[f64], at: &[f64], confidence: f64) -> Res
             .iter()
             .enumerate()
             .map(|(k, &share)| {
+                if let Some(why) = &untold {
+                    return (share, Estimate::none(why.clone()));
+                }
                 let quantile = estimate(2 + k);
                 (share, resolved(quantile, sections.len(), 2 * halves.points, confidence))
             })
