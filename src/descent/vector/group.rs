@@ -14,6 +14,10 @@ const MOST_STEPS: f64 = 20_000.0;
 /// Smallest step, relative to where the clock stands.
 const FINEST: f64 = 1e-15;
 
+/// A step's growth aims at this share of the tolerance's fourth root; a larger one saves no steps, as more
+/// of them are rejected (0.85: 2 % rejected; 0.9: 5 %; 0.95: 14 %, and more steps in all).
+const SAFETY: f64 = 0.85;
+
 /// The clock changes to line length when the unbalanced force has fallen below this share of the load:
 /// after two or three fast time constants. Between 0.005 and 0.3 it makes no difference to cost or error.
 const SETTLED: f64 = 0.1;
@@ -141,12 +145,10 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
         let step = rosenbrock::step(&self.model, y, moment, tried);
         let trying = self.fresh.lt(V::splat(0.5));
         self.attempts = self.attempts + (one - self.fresh);
-        let way = (step.state[0] - y[0]) * self.model.constants().inverse_length;
-        let weight = V::splat(M::LONG_STEP).mul_add(way, one) * self.inverse_tolerance;
-        let error = self.model.error(&step) * weight;
+        let error = self.model.error(&step) * self.inverse_tolerance;
         // The embedded method is of order 3. What is not a number counts as an error of 1e8.
         let size = V::splat(1e-8).max(error.min(V::splat(1e8)));
-        let growth = V::splat(M::SAFETY) * inverse_fourth_root(size);
+        let growth = V::splat(SAFETY) * inverse_fourth_root(size);
         let growth = V::splat(0.2).max(V::splat(5.0).min(growth));
         let good = error.le(one).and(trying);
 

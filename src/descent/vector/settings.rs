@@ -29,7 +29,7 @@ impl Settings {
     /// The bound on a step's weighted error: measured to give the wanted one at the end.
     pub(super) fn local_tolerance(&self, model: Model) -> f64 {
         let factor = match model {
-            Model::Dynamic => 2.2,
+            Model::Dynamic => 2.4,
             Model::QuasiSteady => 1.8,
         };
         factor * self.tolerance.clamp(1e-12, 1e-3)
