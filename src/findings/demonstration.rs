@@ -229,10 +229,6 @@ fn by_sequence(
     Ok((word, Decision::Sequence { bounds }, evidence))
 }
 
-/// Breaches below which the scatter of replicates shows too little of itself: an interval for 90 % was measured to hold 82
-/// to 90 % with three to eight of them, and a one-sided bound less.
-const FEW_BREACHES: u64 = 10;
-
 /// Two one-sided bounds at C are the ends of a two-sided interval at 2 C − 1.
 fn by_replicates(
     requirement: &Requirement,
@@ -241,13 +237,7 @@ fn by_replicates(
     let limit = requirement.failure_limit();
     let counts: Vec<Proportion> = record.by_replicate().iter().map(|c| c.any()).collect();
     let both = 2.0 * requirement.confidence - 1.0;
-    let few: u64 = counts.iter().map(|count| count.breaches + count.faults).sum();
-    let bounds = if (1..FEW_BREACHES).contains(&few) {
-        Earned::none(format!(
-            "fewer than ten breaches ({few}) over all replicates are too few for their scatter to demonstrate anything; a plain Monte Carlo \
-             design counts exactly"
-        ))
-    } else if both <= 0.0 {
+    let bounds = if both <= 0.0 {
         Earned::none("a confidence of one half or less bounds nothing")
     } else if counts.iter().any(|count| count.samples == 0) {
         Earned::none("a replicate has no sample yet")

@@ -170,7 +170,9 @@ fn design_value(finding: &DesignValueFinding) -> String {
 
 /// The trade in words.
 pub(super) fn trade(finding: &TradeFinding) -> Trade {
-    let best = finding.best.iter().map(|found| tightening(found, ""));
+    let nothing = (finding.best.is_empty() && finding.none.is_none())
+        .then(|| "No halved spread is shown to lower P(any breach).".to_owned());
+    let best = finding.best.iter().map(|found| tightening(found, "")).chain(nothing);
     let best = best.chain(finding.design.iter().map(design_value));
     let values = finding.design.iter().zip(&finding.at_design);
     let values: Vec<String> =

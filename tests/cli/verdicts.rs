@@ -40,6 +40,23 @@ fn property_exit_codes_tell_the_verdict() {
     run(&place, &[&["--samples", "no"]]).ended_with(1);
 }
 
+/// Where no sample breaches, nothing is best, nothing tightened helps, and no band is drawn.
+#[test]
+fn property_what_no_sample_shows_is_not_told() {
+    let place = Place::new("clean");
+    let out = run(&place, &[LENIENT, &["--samples", "2000"]]).ended_with(0).out;
+    let words = out.split_whitespace().collect::<Vec<_>>().join(" ");
+    for wanted in [
+        "the best fluid.nominal_viscosity is not resolved: over a part of its range none of",
+        "No halved spread is shown to lower P(any breach).",
+        "cannot be told: it happened with 0 of",
+        "MET: P(any breach) 0 (0 … ",
+    ] {
+        assert!(words.contains(wanted), "{wanted}: {out}");
+    }
+    assert!(!words.contains("is best at") && !words.contains("Halving"), "{out}");
+}
+
 #[test]
 fn property_without_a_requirement_done_is_done() {
     let place = Place::new("no-requirement");

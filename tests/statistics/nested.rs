@@ -211,3 +211,18 @@ fn property_what_a_set_cannot_resolve_is_not_believed() {
     assert!(nested_sample(&plane, 30, 4, 1).is_err());
     assert!(share_sample(&plane, &[vec![1]], 100, 4, 1).is_err(), "coordinate 1 varies");
 }
+
+/// Where hardly any set sees the event, quantiles over the sets would be lines drawn from no event to those few.
+#[test]
+fn property_no_quantile_of_an_event_that_hardly_a_set_sees() {
+    let rare = found(&Plane::new(0.3, 3.2, 1.0), 400, 20, 0.5, 5);
+    let seen = rare.mean.value.unwrap();
+    assert!(seen > 0.0 && seen < 0.01, "the test needs a few breaches: {seen}");
+    for (_, quantile) in &rare.quantiles {
+        assert_eq!(quantile.value, None);
+        let why = quantile.interval.why_none().unwrap();
+        assert!(why.contains("of 400 sets of values only"), "{why}");
+    }
+    let usual = found(&Plane::new(1.0, 0.3, 0.5), 400, 20, 0.5, 5);
+    assert!(usual.quantiles.iter().all(|(_, quantile)| quantile.value.is_some()));
+}

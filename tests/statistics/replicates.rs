@@ -2,6 +2,7 @@
 
 use reeldown::reliability::probability::Proportion;
 use reeldown::reliability::replicates::{from_replicate_counts, from_replicates};
+use reeldown::streams::{Purpose, open_uniform, stream};
 
 #[test]
 fn analytic_student_interval_of_four_replicates() {
@@ -59,4 +60,48 @@ fn property_replicates_with_faults_are_counted_both_ways() {
     let clean = from_replicate_counts(&[counts(10, 0), counts(12, 0)], 0.9).unwrap();
     assert_eq!(clean, from_replicates(&[0.10, 0.12], 0.9).unwrap());
     assert!(from_replicate_counts(&[Proportion::new(0, 0, 0).unwrap()], 0.9).is_err());
+}
+
+/// A one-sided bound at 90 % from a few breaches, which the scatter of replicates alone misses in one case of four: the
+/// case of a trial in which one run in four called a requirement met that was not.
+#[test]
+fn property_a_bound_from_a_few_breaches_holds_as_often_as_it_says() {
+    const REPLICATES: usize = 16;
+    const SAMPLES: u64 = 1200;
+    const TRIALS: u64 = 2000;
+    for mean in [2.4, 3.5, 5.0] {
+        let p = mean / (REPLICATES as f64 * SAMPLES as f64);
+        let (mut below, mut stated, mut narrow) = (0, 0, 0);
+        for trial in 0..TRIALS {
+            let mut draws = stream(trial, Purpose::Test, 77);
+            let counts: Vec<Proportion> = (0..REPLICATES)
+                .map(|_| {
+                    // Waiting times between breaches, as long as the replicate lasts.
+                    let mut breaches = 0;
+                    let mut at = -open_uniform(&mut draws).ln() / p;
+                    while at < SAMPLES as f64 {
+                        breaches += 1;
+                        at -= open_uniform(&mut draws).ln() / p;
+                    }
+                    Proportion::new(breaches, 0, SAMPLES).unwrap()
+                })
+                .collect();
+            // Two-sided at 80 %: each end is a bound at 90 %.
+            let found = from_replicate_counts(&counts, 0.8).unwrap().probability.interval;
+            let Some(interval) = found.interval() else { continue };
+            stated += 1;
+            below += u64::from(interval.upper < p);
+            let shares: Vec<f64> =
+                counts.iter().map(|c| c.breaches as f64 / SAMPLES as f64).collect();
+            let alone = from_replicates(&shares, 0.8).unwrap().probability.interval;
+            narrow += u64::from(alone.interval().is_some_and(|i| i.upper < p));
+        }
+        // Four standard errors of a share of 10 % among so many.
+        let most = 0.1 * stated as f64 + 4.0 * (0.09 * stated as f64).sqrt();
+        assert!((below as f64) <= most, "{mean}: {below} of {stated}");
+        if mean < 3.0 {
+            // Without the exact interval the test would fail here.
+            assert!(narrow as f64 > 0.2 * stated as f64, "{mean}: {narrow} of {stated}");
+        }
+    }
 }
