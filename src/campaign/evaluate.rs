@@ -84,10 +84,10 @@ impl<'a> Ensemble<'a> {
     ) -> Result<Vec<OutcomeTable>> {
         let rows = (range.end - range.start) as usize;
         let work = Work { first: range.start, rows, keep_inputs: true, may_stop: true };
-        self.batches(&work, progress, |start, inputs| {
-            let mut uniforms = Columns::new(inputs.rows(), self.dimension());
-            sampler.fill(range.start + start as u64, &mut uniforms)?;
-            self.joint.from_uniform(&uniforms, inputs);
+        self.batches(&work, progress, |start, scratch, inputs| {
+            scratch.reshape(inputs.rows(), self.dimension());
+            sampler.fill(range.start + start as u64, scratch)?;
+            self.joint.from_uniform(scratch, inputs);
             Ok(())
         })
     }
@@ -121,11 +121,14 @@ impl<'a> Ensemble<'a> {
         progress: &Progress,
         fill: impl Fn(usize, &mut Columns) + Sync,
     ) -> OutcomeTable {
-        let filled =
-            self.batches(work, progress, |start, inputs| -> std::result::Result<(), Infallible> {
+        let filled = self.batches(
+            work,
+            progress,
+            |start, _, inputs| -> std::result::Result<(), Infallible> {
                 fill(start, inputs);
                 Ok(())
-            });
+            },
+        );
         let inputs = if work.keep_inputs { self.dimension() } else { 0 };
         match filled {
             Ok(parts) => OutcomeTable::joined(work.first, inputs, &parts),
@@ -133,25 +136,26 @@ impl<'a> Ensemble<'a> {
         }
     }
 
-    /// Computes rows in batches, whose draws `fill` writes for the rows from its first argument on.
+    /// Computes rows in batches, whose draws `fill` writes into its last argument for the rows from its first
+    /// on; the table between is its to use.
     fn batches<E: Send>(
         &self,
         work: &Work,
         progress: &Progress,
-        fill: impl Fn(usize, &mut Columns) -> std::result::Result<(), E> + Sync,
+        fill: impl Fn(usize, &mut Columns, &mut Columns) -> std::result::Result<(), E> + Sync,
     ) -> std::result::Result<Vec<OutcomeTable>, E> {
         let starts: Vec<usize> = (0..work.rows).step_by(BATCH).collect();
         let batches: Vec<Option<OutcomeTable>> = starts
             .par_iter()
-            .map(|&start| {
+            .map_init(Scratch::default, |scratch, &start| {
                 if work.may_stop && progress.stopping() {
                     return Ok(None);
                 }
                 let rows = (work.rows - start).min(BATCH);
                 let mut table =
                     OutcomeTable::new(work.first + start as u64, rows, self.dimension());
-                fill(start, &mut table.inputs)?;
-                self.integrate(&mut table);
+                fill(start, &mut scratch.uniforms, &mut table.inputs)?;
+                self.integrate(&mut table, scratch);
                 progress.advance(rows);
                 if !work.keep_inputs {
                     table.inputs = Columns::new(rows, 0);
@@ -163,7 +167,8 @@ impl<'a> Ensemble<'a> {
     }
 
     /// Integrates the rows of a table from its inputs. An impossible draw is a fault of its row.
-    fn integrate(&self, table: &mut OutcomeTable) {
+    fn integrate(&self, table: &mut OutcomeTable, scratch: &mut Scratch) {
+        let Scratch { coefficients, results, .. } = scratch;
         let mut design = self.design.clone();
         let mut possible = vec![true; table.rows()];
         if self.checks_are_separate {
@@ -174,25 +179,50 @@ impl<'a> Ensemble<'a> {
                 }
             }
         }
-        let mut coefficients = Vec::with_capacity(table.rows());
+        coefficients.clear();
         let mut rows = Vec::with_capacity(table.rows());
-        for (k, &possible) in possible.iter().enumerate() {
-            for (j, &target) in self.targets.iter().enumerate() {
-                design.set(target, table.inputs.get(k, j));
+        // A few rows at a time, each column's side by side: columns are a power of two apart, so that row by
+        // row they would drive each other out of the cache.
+        let width = self.targets.len();
+        let mut draws = vec![0.0; ABREAST * width];
+        for first in (0..table.rows()).step_by(ABREAST) {
+            let count = ABREAST.min(table.rows() - first);
+            for j in 0..width {
+                let values = &table.inputs.column(j)[first..first + count];
+                for (row, &value) in values.iter().enumerate() {
+                    draws[row * width + j] = value;
+                }
             }
-            if possible && (self.checks_are_separate || design.is_possible()) {
-                coefficients.push(Coefficients::new(&design));
-                rows.push(k);
-            } else {
-                table.record(k, Err(Fault::ImpossibleInput));
+            for k in first..first + count {
+                for (&target, &value) in self.targets.iter().zip(&draws[(k - first) * width..]) {
+                    design.set(target, value);
+                }
+                if possible[k] && (self.checks_are_separate || design.is_possible()) {
+                    coefficients.push(Coefficients::new(&design));
+                    rows.push(k);
+                } else {
+                    table.record(k, Err(Fault::ImpossibleInput));
+                }
             }
         }
-        let mut results = vec![Err(Fault::NotFinite); rows.len()];
-        descent::descend_batch(self.model, self.tolerance, &coefficients, &mut results);
-        for (k, result) in rows.into_iter().zip(results) {
+        results.clear();
+        results.resize(rows.len(), Err(Fault::NotFinite));
+        descent::descend_batch(self.model, self.tolerance, coefficients, results);
+        for (k, &result) in rows.into_iter().zip(results.iter()) {
             table.record(k, result);
         }
     }
+}
+
+/// Rows whose inputs are gathered at a time.
+const ABREAST: usize = 8;
+
+/// What a thread uses again for its next batch.
+#[derive(Default)]
+struct Scratch {
+    uniforms: Columns,
+    coefficients: Vec<Coefficients<f64>>,
+    results: Vec<std::result::Result<Outcome, Fault>>,
 }
 
 /// Rows to compute.

@@ -105,34 +105,21 @@ fn margins(limits: &[Limit], table: &OutcomeTable, rows: Range<usize>) -> Column
 }
 
 /// Gathers consecutive tables, none of which crosses a row group's end, into whole row groups.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct RowGroups {
-    inputs: usize,
     pending: Vec<OutcomeTable>,
 }
 
 impl RowGroups {
-    /// Of tables with this many inputs.
-    pub fn new(inputs: usize) -> Self {
-        RowGroups { inputs, pending: Vec::new() }
-    }
-
-    /// Takes the next table, and gives back a row group if it is complete with it.
-    pub fn push(&mut self, table: OutcomeTable) -> Option<OutcomeTable> {
+    /// Takes the next table, and gives back a row group's if it is complete with it.
+    pub fn push(&mut self, table: OutcomeTable) -> Option<Vec<OutcomeTable>> {
         let end = table.first + table.rows() as u64;
         self.pending.push(table);
-        if end.is_multiple_of(super::ROW_GROUP) { self.rest() } else { None }
+        end.is_multiple_of(super::ROW_GROUP).then(|| self.rest())
     }
 
-    /// What is left, as the last row group.
-    pub fn rest(&mut self) -> Option<OutcomeTable> {
-        let tables = std::mem::take(&mut self.pending);
-        match tables.len() {
-            0 | 1 => tables.into_iter().next(),
-            _ => {
-                let first = tables.first().map_or(0, |table| table.first);
-                Some(OutcomeTable::joined(first, self.inputs, &tables))
-            }
-        }
+    /// What is left, the last row group's; none where the last table completed one.
+    pub fn rest(&mut self) -> Vec<OutcomeTable> {
+        std::mem::take(&mut self.pending)
     }
 }

@@ -90,7 +90,7 @@ pub fn sampler(study: &Study) -> Result<Sampler> {
 }
 
 /// Computes samples `range` of the study's main design, row group by row group in order, and hands each
-/// to `sink`, which may take its time while the next is computed. Returns the index after the last sample
+/// to `sink` in several tables, which may take its time while the next is computed. Returns the index after the last sample
 /// computed: less than `range.end` if `progress` was asked to stop.
 ///
 /// # Errors
@@ -104,8 +104,8 @@ pub fn run(
     run_until(study, &mut Looks::fixed(range), progress, sink)
 }
 
-/// Computes the samples that `looks` still wants, as [`run`] does; a table ends at a row group's end or
-/// at a look.
+/// Computes the samples that `looks` still wants, as [`run`] does; no table goes beyond a row group's end or
+/// a look.
 ///
 /// # Errors
 /// What [`sampler`] refuses, and whatever `sink` returns.
@@ -117,14 +117,13 @@ pub fn run_until(
 ) -> Result<u64> {
     let sampler = sampler(study)?;
     let ensemble = Ensemble::new(study);
-    let inputs = ensemble.dimension();
-    let (sender, receiver) = std::sync::mpsc::sync_channel::<(u64, Vec<OutcomeTable>)>(1);
+    let (sender, receiver) = std::sync::mpsc::sync_channel::<Vec<OutcomeTable>>(1);
     std::thread::scope(|scope| {
         // What one thread must do for a row group, waiting for the disk included, is done beside the next one's
         // descents.
         let writer = scope.spawn(move || {
             let mut groups = receiver.into_iter();
-            groups.try_for_each(|(first, parts)| sink(OutcomeTable::joined(first, inputs, &parts)))
+            groups.try_for_each(|parts| parts.into_iter().try_for_each(&mut *sink))
         });
         while !looks.over() && !progress.stopping() {
             let next = looks.taken();
@@ -134,7 +133,7 @@ pub fn run_until(
                 looks.take(part)?;
             }
             // A receiver that is gone has failed: its error is returned below.
-            if !parts.is_empty() && sender.send((next, parts)).is_err() {
+            if !parts.is_empty() && sender.send(parts).is_err() {
                 break;
             }
         }

@@ -144,7 +144,7 @@ impl Run<'_> {
         let mut rows = Rows {
             record: Record::new(self.study, sampler.replicates())?,
             writer: OutcomesWriter::create(&path, self.study, &self.parentage)?,
-            groups: RowGroups::new(self.study.inputs.len()),
+            groups: RowGroups::default(),
         };
         if let Some(reader) = &before {
             while looks.taken() < reader.rows() && !looks.over() {
@@ -304,14 +304,15 @@ impl Rows {
         }
     }
 
-    fn keep(&mut self, group: &OutcomeTable) -> Result<()> {
-        self.record.absorb(group);
+    fn keep(&mut self, group: &[OutcomeTable]) -> Result<()> {
+        group.iter().for_each(|table| self.record.absorb(table));
         self.writer.write(group)
     }
 
     fn finish(mut self) -> Result<Record> {
-        if let Some(group) = self.groups.rest() {
-            self.keep(&group)?;
+        let rest = self.groups.rest();
+        if !rest.is_empty() {
+            self.keep(&rest)?;
         }
         self.writer.finish()?;
         Ok(self.record)

@@ -91,9 +91,14 @@ impl Columns {
 
     /// Gives the table another shape, all zeros, keeping its memory.
     pub fn reset(&mut self, rows: usize, columns: usize) {
+        self.data.clear();
+        self.reshape(rows, columns);
+    }
+
+    /// Gives the table another shape, keeping its memory; its values are the caller's to write, all of them.
+    pub fn reshape(&mut self, rows: usize, columns: usize) {
         self.rows = rows;
         self.columns = columns;
-        self.data.clear();
         self.data.resize(rows * columns, 0.0);
     }
 }

@@ -15,7 +15,7 @@ pub mod quasi_steady;
 pub mod reel;
 pub mod thermal;
 
-pub use coefficients::Coefficients;
+pub use coefficients::{Coefficients, FIELD_COUNT};
 pub use design::{Design, Target};
 pub use parameters::{PARAMETERS, Parameter, ParameterInfo};
 

@@ -6,7 +6,7 @@ use crate::descent::{Fault, OutcomeQuantity};
 use crate::error::{Error, Result};
 use crate::outcomes::OutcomeTable;
 use crate::study::Study;
-use polars::prelude::{Column, DataFrame, ParquetReader, SerReader};
+use polars::prelude::{Column, DataFrame, Float64Chunked, IntoColumn, ParquetReader, SerReader};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -50,43 +50,63 @@ impl Layout {
         }
     }
 
-    fn frame(&self, table: &OutcomeTable) -> polars::prelude::PolarsResult<DataFrame> {
-        let rows = table.rows();
-        let indices: Vec<u64> = (0..rows as u64).map(|k| table.first + k).collect();
+    /// Consecutive tables, one after the other.
+    fn frame(&self, tables: &[OutcomeTable]) -> polars::prelude::PolarsResult<DataFrame> {
+        let first = tables.first().map_or(0, |table| table.first);
+        let rows = tables.iter().map(OutcomeTable::rows).sum();
+        let indices: Vec<u64> = (first..first + rows as u64).collect();
         let mut columns = vec![Column::new(SAMPLE.into(), indices)];
+        let one_after_the_other = |column: &dyn Fn(&OutcomeTable, &mut Vec<f64>)| {
+            let mut values = Vec::with_capacity(rows);
+            tables.iter().for_each(|table| column(table, &mut values));
+            values
+        };
         for (j, name) in self.inputs.iter().enumerate() {
-            columns.push(Column::new(name.as_str().into(), table.inputs.column(j)));
+            let of = |table: &OutcomeTable, all: &mut Vec<f64>| {
+                all.extend_from_slice(table.inputs.column(j));
+            };
+            columns.push(number_column(name, one_after_the_other(&of), None));
         }
+        let faults: Vec<Option<Fault>> =
+            tables.iter().flat_map(|table| table.faults.iter().copied()).collect();
+        let faulted = faults.iter().any(Option::is_some).then_some(&faults[..]);
         for quantity in OutcomeQuantity::ALL {
+            let of = |table: &OutcomeTable, all: &mut Vec<f64>| {
+                all.extend_from_slice(table.outcome(quantity));
+            };
             let name = quantity.column();
-            columns.push(number_column(&name, table.outcome(quantity), table));
+            columns.push(number_column(&name, one_after_the_other(&of), faulted));
         }
         for (name, limit) in &self.margins {
-            let margins: Vec<f64> =
-                table.outcome(limit.outcome).iter().map(|&v| limit.margin_of(v)).collect();
-            columns.push(number_column(name, &margins, table));
+            let of = |table: &OutcomeTable, all: &mut Vec<f64>| {
+                all.extend(table.outcome(limit.outcome).iter().map(|&v| limit.margin_of(v)));
+            };
+            columns.push(number_column(name, one_after_the_other(&of), faulted));
         }
-        let deployed: Vec<Option<bool>> =
-            (0..rows).map(|k| table.faults[k].is_none().then_some(table.deployed[k])).collect();
+        let deployed: Vec<Option<bool>> = tables
+            .iter()
+            .flat_map(|table| &table.deployed)
+            .zip(&faults)
+            .map(|(&deployed, fault)| fault.is_none().then_some(deployed))
+            .collect();
         columns.push(Column::new(DEPLOYED.into(), deployed));
-        let faults: Vec<Option<&str>> =
-            table.faults.iter().map(|fault| fault.map(Fault::name)).collect();
+        let faults: Vec<Option<&str>> = faults.iter().map(|fault| fault.map(Fault::name)).collect();
         columns.push(Column::new(FAULT.into(), faults));
         frame(rows, columns)
     }
 }
 
-/// A column of numbers, null where the sample faulted.
-fn number_column(name: &str, values: &[f64], table: &OutcomeTable) -> Column {
-    if table.faults.iter().all(Option::is_none) {
-        return Column::new(name.into(), values);
-    }
+/// A column of numbers, null where a sample faulted, if any has.
+fn number_column(name: &str, values: Vec<f64>, faults: Option<&[Option<Fault>]>) -> Column {
+    let Some(faults) = faults else {
+        return Float64Chunked::from_vec(name.into(), values).into_column();
+    };
     let values: Vec<Option<f64>> =
-        values.iter().zip(&table.faults).map(|(&v, fault)| fault.is_none().then_some(v)).collect();
+        values.iter().zip(faults).map(|(&v, fault)| fault.is_none().then_some(v)).collect();
     Column::new(name.into(), values)
 }
 
-/// Writes `outcomes.parquet`, one row group a table.
+/// Writes `outcomes.parquet`, row group by row group.
 pub struct OutcomesWriter {
     layout: Layout,
     writer: TableWriter,
@@ -99,18 +119,17 @@ impl OutcomesWriter {
     /// If it cannot be made.
     pub fn create(path: &Path, study: &Study, parentage: &Parentage) -> Result<Self> {
         let layout = Layout::new(study);
-        let empty = OutcomeTable::new(0, 0, study.inputs.len());
-        let schema = layout.frame(&empty).map_err(|reason| unusable(path, reason))?;
+        let schema = layout.frame(&[]).map_err(|reason| unusable(path, reason))?;
         let writer = TableWriter::create(path, schema.schema(), parentage.entries())?;
         Ok(OutcomesWriter { layout, writer })
     }
 
-    /// Writes the next samples.
+    /// Writes the next samples, in consecutive tables, as one row group.
     ///
     /// # Errors
     /// If the disk does not take them.
-    pub fn write(&mut self, table: &OutcomeTable) -> Result<()> {
-        let frame = self.layout.frame(table).map_err(|r| Error::argument(r.to_string()))?;
+    pub fn write(&mut self, tables: &[OutcomeTable]) -> Result<()> {
+        let frame = self.layout.frame(tables).map_err(|r| Error::argument(r.to_string()))?;
         self.writer.write(&frame)
     }
 

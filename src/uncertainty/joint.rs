@@ -111,7 +111,7 @@ impl Joint {
     /// If `u` has fewer columns than there are inputs: a mistake of the caller's.
     pub fn from_uniform(&self, u: &Columns, x: &mut Columns) {
         if self.copula.is_none() {
-            x.reset(u.rows(), self.dimension());
+            x.reshape(u.rows(), self.dimension());
             for (j, marginal) in self.alone() {
                 marginal.quantile_column(u.column(j), x.column_mut(j));
             }
@@ -161,7 +161,7 @@ impl Joint {
             }
             None => z,
         };
-        x.reset(z.rows(), self.dimension());
+        x.reshape(z.rows(), self.dimension());
         for (j, marginal) in self.alone() {
             marginal.from_standard_normal_column(z.column(j), x.column_mut(j));
         }

@@ -5,9 +5,7 @@
 
 use super::truncation::Truncation;
 use crate::numerics::special::kernels::{exponential_column, exponential_value, over_lanes};
-use crate::numerics::special::normal::{
-    self, FAR_TAIL, LANE_LIMIT, magnitude, magnitude_lane, tail_lane,
-};
+use crate::numerics::special::normal::{self, LANE_LIMIT, magnitude, tail_lane};
 
 /// exp(x), the scalar form of the columns here.
 pub(super) fn exponential_of(x: f64) -> f64 {
@@ -27,15 +25,11 @@ pub(super) fn truncated_normal_of(cut: &Truncation, tail: f64, lower: bool) -> f
     if below <= above { -magnitude(below) } else { magnitude(above) }
 }
 
-/// [`truncated_normal_of`] as a straight line; NaN where the tail is too far out for it.
+/// The smaller tail of the whole law where the truncated one has `tail`, negative where it is the lower one.
 #[inline(always)]
-fn truncated_normal_lane(cut: &Truncation, tail: f64, lower: bool) -> f64 {
+fn signed_tail(cut: &Truncation, tail: f64, lower: bool) -> f64 {
     let (below, above) = cut.tails_of(tail, lower);
-    let left = below <= above;
-    let smaller = if left { below } else { above };
-    let z = magnitude_lane(smaller);
-    let z = if left { -z } else { z };
-    if smaller >= FAR_TAIL { z } else { f64::NAN }
+    if below <= above { -below } else { above }
 }
 
 /// The smaller tail at a uniform `u`, and whether it is the lower one.
@@ -46,18 +40,18 @@ pub(super) fn tail_of_uniform(u: f64) -> (f64, bool) {
 }
 
 over_lanes! {
-    /// The straight-line part of [`truncated_from_uniform`].
-    narrow fn truncated_from_uniform_lanes(u: &[f64], out: &mut [f64], cut: &Truncation) {
+    /// [`signed_tail`] at uniforms.
+    fn signed_tails_at_uniforms(u: &[f64], out: &mut [f64], cut: &Truncation) {
         for (out, &u) in out.iter_mut().zip(u) {
             let (tail, lower) = tail_of_uniform(u);
-            *out = truncated_normal_lane(cut, tail, lower);
+            *out = signed_tail(cut, tail, lower);
         }
     }
 }
 
 /// Standard normal values of the truncated law at uniforms.
 fn truncated_from_uniform(u: &[f64], out: &mut [f64], cut: &Truncation) {
-    truncated_from_uniform_lanes(u, out, cut);
+    in_blocks(u, out, |u, tails| signed_tails_at_uniforms(u, tails, cut));
     for (out, &u) in out.iter_mut().zip(u) {
         if out.is_nan() {
             let (tail, lower) = tail_of_uniform(u);
@@ -67,23 +61,34 @@ fn truncated_from_uniform(u: &[f64], out: &mut [f64], cut: &Truncation) {
 }
 
 over_lanes! {
-    /// The straight-line part of [`truncated_from_normal`].
-    fn truncated_from_normal_lanes(z: &[f64], out: &mut [f64], cut: &Truncation) {
+    /// [`signed_tail`] at standard normal values, NaN far out.
+    fn signed_tails_at_normals(z: &[f64], out: &mut [f64], cut: &Truncation) {
         for (out, &z) in out.iter_mut().zip(z) {
             let t = z.abs();
-            let value = truncated_normal_lane(cut, tail_lane(t), z <= 0.0);
-            *out = if t <= LANE_LIMIT { value } else { f64::NAN };
+            let tail = signed_tail(cut, tail_lane(t), z <= 0.0);
+            *out = if t <= LANE_LIMIT { tail } else { f64::NAN };
         }
     }
 }
 
 /// Standard normal values of the truncated law at standard normal values of equal probability.
 fn truncated_from_normal(z: &[f64], out: &mut [f64], cut: &Truncation) {
-    truncated_from_normal_lanes(z, out, cut);
+    in_blocks(z, out, |z, tails| signed_tails_at_normals(z, tails, cut));
     for (out, &z) in out.iter_mut().zip(z) {
         if out.is_nan() {
             *out = truncated_normal_of(cut, normal::cdf(-z.abs()), z <= 0.0);
         }
+    }
+}
+
+/// Standard normal values of the signed tails that `tails_of` writes, block by block.
+fn in_blocks(from: &[f64], out: &mut [f64], tails_of: impl Fn(&[f64], &mut [f64])) {
+    const BLOCK: usize = 256;
+    let mut tails = [0.0; BLOCK];
+    for (from, out) in from.chunks(BLOCK).zip(out.chunks_mut(BLOCK)) {
+        let tails = &mut tails[..from.len()];
+        tails_of(from, tails);
+        normal::of_signed_tails(tails, out);
     }
 }
 

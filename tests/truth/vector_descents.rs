@@ -102,16 +102,15 @@ fn property_results_do_not_depend_on_lane_mates_order_chunks_or_instruction_set(
 }
 
 /// Operation counts of the algorithm, not times: means per descent over 2 000 members of the default study and of
-/// the stress set. A change of the
-/// algorithm that costs more than the margin (2 %) fails here.
+/// the stress set. A change of the algorithm that costs more than the margin (2 %) fails here.
 #[test]
 fn regression_steps_and_evaluations_per_descent() {
     let (usual, hard) = (default_study(2000), stress(2000));
     let cases = [
-        (&usual, Model::Dynamic, 1e-5, 26.39, 158.6),
-        (&usual, Model::Dynamic, 1e-6, 42.22, 253.7),
+        (&usual, Model::Dynamic, 1e-5, 18.71, 112.5),
+        (&usual, Model::Dynamic, 1e-6, 31.71, 190.7),
         (&usual, Model::QuasiSteady, 1e-6, 34.16, 205.5),
-        (&hard, Model::Dynamic, 1e-6, 45.47, 272.1),
+        (&hard, Model::Dynamic, 1e-6, 40.39, 241.6),
         (&hard, Model::QuasiSteady, 1e-6, 36.68, 219.6),
     ];
     for (batch, model, tolerance, attempts, evaluations) in cases {

@@ -1,6 +1,6 @@
 //! A lane's constants: a descent's coefficients in the combinations that the kernels use.
 
-use crate::numerics::lanes::Lanes;
+use crate::numerics::lanes::{Lanes, Mask};
 use crate::numerics::real::Real;
 use crate::physics::{Coefficients, GRAVITY};
 
@@ -15,6 +15,7 @@ macro_rules! constants {
 
         impl<V: Copy> Constants<V> {
             /// The same constants in another number type.
+            #[inline(always)]
             pub fn map<T>(&self, convert: impl Fn(V) -> T) -> Constants<T> {
                 Constants { $($name: convert(self.$name),)* }
             }
@@ -27,9 +28,10 @@ macro_rules! constants {
                 Constants { $($name: V::splat(one.$name),)* }
             }
 
-            /// Sets one lane's constants.
-            pub fn set_lane(&mut self, lane: usize, one: &Constants<f64>) {
-                $(self.$name.lanes_mut()[lane] = one.$name;)*
+            /// Sets one lane's constants to those in a lane of others.
+            #[inline(always)]
+            pub fn copy_lane(&mut self, lane: usize, others: &Constants<V>, from: usize) {
+                $(self.$name.lanes_mut()[lane] = others.$name.lanes()[from];)*
             }
         }
     };
@@ -102,8 +104,21 @@ constants! {
     rise_speed,
 }
 
+impl<V: Lanes> Constants<V> {
+    /// Takes the shear thinning from one lane.
+    pub fn set_newtonian(&mut self, lane: usize) {
+        self.cross_group.lanes_mut()[lane] = NEWTONIAN.0;
+        self.cross_exponent.lanes_mut()[lane] = NEWTONIAN.1;
+        self.cross_on.lanes_mut()[lane] = 0.0;
+    }
+}
+
+/// Cross group per `z R` and exponent of a fluid that does not thin.
+const NEWTONIAN: (f64, f64) = (0.0, 0.5);
+
 impl<R: Real> Constants<R> {
     /// The constants of a descent.
+    #[inline(always)]
     pub fn new(c: &Coefficients<R>) -> Self {
         let value = R::constant;
         let one = value(1.0);
@@ -129,8 +144,12 @@ impl<R: Real> Constants<R> {
             inverse_torque,
             minus_viscosity_temperature: -c.fluid.viscosity_temperature_k,
             averaging_offset: c.fluid.averaging_offset,
-            cross_group: if thins { c.fluid.cross_time_s * inverse_torque } else { value(0.0) },
-            cross_exponent: if thins { c.fluid.cross_exponent } else { value(0.5) },
+            cross_group: if thins {
+                c.fluid.cross_time_s * inverse_torque
+            } else {
+                value(NEWTONIAN.0)
+            },
+            cross_exponent: if thins { c.fluid.cross_exponent } else { value(NEWTONIAN.1) },
             cross_on: value(if thins { 1.0 } else { 0.0 }),
             weight: c.payload.weight_n,
             extraction: c.payload.extraction_n_per_m,
@@ -156,14 +175,21 @@ impl<R: Real> Constants<R> {
 }
 
 impl Constants<f64> {
-    /// The constants of a descent, or nothing if they are impossible: not finite, or with the wrong sign
-    /// where the equations need one.
+    /// The constants of a descent, or nothing if they are impossible.
     pub fn possible(c: &Coefficients<f64>) -> Option<Self> {
         let constants = Constants::new(c);
-        constants.are_possible(c).then_some(constants)
+        let heat = &c.thermal;
+        let capacities = [heat.rotor_capacity_j_per_k, heat.housing_capacity_j_per_k];
+        constants.possible_lanes(c.balloon.moving_mass_kg, capacities).then_some(constants)
     }
+}
 
-    fn are_possible(&self, c: &Coefficients<f64>) -> bool {
+impl<V: Lanes> Constants<V> {
+    /// Where a descent is possible: its constants finite, and of the sign that the equations need.
+    #[inline(always)]
+    pub fn possible_lanes(&self, moving_mass: V, capacities: [V; 2]) -> V::Mask {
+        let (zero, one) = (V::splat(0.0), V::splat(1.0));
+        let infinite = V::splat(f64::INFINITY);
         let positive = [
             self.length,
             self.inverse_length,
@@ -173,13 +199,15 @@ impl Constants<f64> {
             self.inverse_torque,
             self.weight,
             self.weight - self.extraction * self.length,
-            c.balloon.moving_mass_kg,
+            moving_mass,
             self.total_mass,
             self.inverse_mass,
             self.drag,
             self.inverse_fluid_capacity,
-            heat_capacity_in_range(c.thermal.rotor_capacity_j_per_k),
-            heat_capacity_in_range(c.thermal.housing_capacity_j_per_k),
+            capacities[0],
+            one / capacities[0],
+            capacities[1],
+            one / capacities[1],
             self.initial_temperature,
             self.cross_exponent,
         ];
@@ -198,13 +226,16 @@ impl Constants<f64> {
         ];
         let finite =
             [self.averaging_offset, self.free_lift, self.air_k, self.rise_speed, self.spool_pull];
-        positive.iter().all(|value| value.is_finite() && *value > 0.0)
-            && not_negative.iter().all(|value| value.is_finite() && *value >= 0.0)
-            && finite.iter().all(|value| value.is_finite())
+        let mut possible = zero.lt(one);
+        for value in positive {
+            possible = possible.and(zero.lt(value)).and(value.lt(infinite));
+        }
+        for value in not_negative {
+            possible = possible.and(zero.le(value)).and(value.lt(infinite));
+        }
+        for value in finite {
+            possible = possible.and(value.abs().lt(infinite));
+        }
+        possible
     }
-}
-
-/// The capacity where its inverse is finite too, nothing (zero) elsewhere.
-fn heat_capacity_in_range(capacity: f64) -> f64 {
-    if (1.0 / capacity).is_finite() { capacity } else { 0.0 }
 }

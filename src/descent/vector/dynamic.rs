@@ -369,6 +369,16 @@ impl<V: Lanes> Dynamic<V> {
         )
     }
 
+    /// Derivative in time of the load less the balloon's and the spool's parts, that the brake has to balance.
+    #[inline(always)]
+    pub fn load_rate(&self, m: &Moment<V>) -> V {
+        let k = &self.constants;
+        let v_rate = m.p * (m.inverse_q * m.force);
+        let shift = k.share_slope * m.v;
+        let balloon_rate = m.rates[1] * self.clock.pace(m.v) + m.eta * v_rate - shift * m.v;
+        -(m.eta * (m.drag_slope * balloon_rate) + shift * m.lift + k.extraction * m.v)
+    }
+
     /// The observables at a moment.
     #[inline(always)]
     pub fn observe(&self, y: &[V; STATES], m: &Moment<V>) -> [V; OBSERVABLES] {

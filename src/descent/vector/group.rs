@@ -4,6 +4,7 @@ use super::clock::Clock;
 use super::model::Model;
 use super::observables::{OBSERVABLES, Peaks};
 use super::rosenbrock;
+use super::start::Start;
 use crate::descent::outcome::{Fault, Outcome, TIME_LIMIT_S};
 use crate::numerics::lanes::elementary::inverse_fourth_root;
 use crate::numerics::lanes::{Lanes, Mask};
@@ -30,9 +31,9 @@ const MANY: f64 = -1.0;
 const SMALL: f64 = -2.0;
 
 /// Part of a descent that a lane is in.
-const STARTING: f64 = 0.0;
+pub const STARTING: f64 = 0.0;
 /// In line length, to the end of the line.
-const PAYING_OUT: f64 = 1.0;
+pub const PAYING_OUT: f64 = 1.0;
 /// In time again, to the time limit, because the line would not have ended before it.
 const RUNNING_LATE: f64 = 2.0;
 /// In line length for good: the line ends, by a hair, before the limit.
@@ -61,37 +62,38 @@ pub struct Group<V, M, const N: usize> {
 }
 
 impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
-    /// Lanes that all stand at the same start.
+    /// Every lane at its start.
     #[inline(always)]
-    pub fn new(model: M, state: [V; N], step: V, local_tolerance: f64) -> Self {
+    pub fn new(model: M, start: &Start<V, N>, local_tolerance: f64) -> Self {
         let zero = V::splat(0.0);
         Group {
             model,
-            state,
-            step,
-            leg: V::splat(if M::IN_LENGTH { PAYING_OUT } else { STARTING }),
+            state: start.state,
+            step: start.step,
+            leg: start.leg,
             attempts: zero,
             fresh: zero,
             finished: zero,
-            peaks: Peaks::new(),
+            peaks: Peaks::new(start.peaks),
             seen: [zero; OBSERVABLES],
             inverse_tolerance: V::splat(1.0 / local_tolerance),
         }
     }
 
-    /// Puts one lane at the start of another descent; the model's constants are the caller's business.
+    /// Puts one lane at the start that others' lane `from` has; the model's constants are the caller's business.
     /// Until the next [`Self::look`], steps leave it where it is: one idle step of a lane costs a third of
     /// what evaluating every lane again does.
-    pub fn restart(&mut self, lane: usize, state: &[f64; N], step: f64) {
-        for (variable, &value) in self.state.iter_mut().zip(state) {
-            variable.lanes_mut()[lane] = value;
+    #[inline(always)]
+    pub fn restart(&mut self, lane: usize, starts: &Start<V, N>, from: usize) {
+        for (variable, others) in self.state.iter_mut().zip(&starts.state) {
+            variable.lanes_mut()[lane] = others.lanes()[from];
         }
-        self.step.lanes_mut()[lane] = step;
-        self.leg.lanes_mut()[lane] = if M::IN_LENGTH { PAYING_OUT } else { STARTING };
+        self.step.lanes_mut()[lane] = starts.step.lanes()[from];
+        self.leg.lanes_mut()[lane] = starts.leg.lanes()[from];
         self.attempts.lanes_mut()[lane] = 0.0;
         self.fresh.lanes_mut()[lane] = 1.0;
         self.finished.lanes_mut()[lane] = RUNNING;
-        self.peaks.clear_lane(lane);
+        self.peaks.restart(lane, &starts.peaks, from);
     }
 
     /// The lanes whose clock is line length.
@@ -115,7 +117,9 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
         self.seen = self.model.observe(&self.state, &moment);
         let velocity = M::velocity(&moment);
         let slopes = self.model.observable_rates(&moment, self.peaks.stiff_rate(velocity));
-        self.peaks.arrive(velocity, &self.seen, &slopes);
+        // A start beyond the initial layer lies before the line's beginning: nothing is there to be seen.
+        let real = zero.le(self.state[0]);
+        self.peaks.arrive(real, velocity, &self.seen, &slopes);
         moment
     }
 
@@ -205,6 +209,7 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
     }
 
     /// What became of a lane that has finished.
+    #[inline(always)]
     pub fn result(&self, lane: usize) -> Result<Outcome, Fault> {
         let of = |value: &V| value.lanes()[lane];
         let how = of(&self.finished);

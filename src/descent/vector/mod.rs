@@ -37,12 +37,15 @@ mod dynamic;
 #[cfg(test)]
 mod equations_test;
 mod group;
+mod initial_layer;
 mod model;
 mod observables;
 mod quasi_steady;
 mod queue;
+mod ready;
 pub mod rosenbrock;
 mod settings;
+mod start;
 pub(super) mod tangents;
 mod thermal;
 

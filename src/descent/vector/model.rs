@@ -19,12 +19,13 @@
 use super::clock::Clock;
 use super::constants::Constants;
 use super::dynamic::{self, Dynamic};
+use super::initial_layer;
 use super::observables::OBSERVABLES;
 use super::quasi_steady::{self, QuasiSteady};
 use super::rosenbrock::{Step, System};
+use super::start::{self, Start};
 use crate::descent::model::Model as Kind;
 use crate::numerics::lanes::Lanes;
-use crate::numerics::lanes::elementary::exp;
 
 /// A model as the kernel's loop drives it. The first state variable is line length, the last is time.
 pub trait Model<V: Lanes, const N: usize>: System<V, N> {
@@ -32,8 +33,6 @@ pub trait Model<V: Lanes, const N: usize>: System<V, N> {
     const KIND: Kind;
     /// Where the temperatures begin in the state.
     const FLUID: usize;
-    /// Whether line length is the clock from the start.
-    const IN_LENGTH: bool;
     /// The model with the lanes' constants.
     fn new(constants: Constants<V>) -> Self;
     /// The lanes' constants.
@@ -44,10 +43,8 @@ pub trait Model<V: Lanes, const N: usize>: System<V, N> {
     fn set_clock(&mut self, clock: Clock<V>);
     /// Says whether any lane's fluid thins with shear.
     fn set_any_cross(&mut self, any: bool);
-    /// The state at the start of descents with these constants.
-    fn start<T: Lanes>(constants: &Constants<T>) -> [T; N];
-    /// The first step to try, in the clock.
-    fn first_step(constants: &Constants<f64>) -> f64;
+    /// Where descents with these constants start, given the bound on a step's weighted error.
+    fn start(constants: &Constants<V>, local_tolerance: f64) -> Start<V, N>;
     /// Relative velocity at a moment.
     fn velocity(moment: &Self::Moment) -> V;
     /// Time per clock at a moment.
@@ -83,8 +80,6 @@ impl<V: Lanes> Model<V, { dynamic::STATES }> for Dynamic<V> {
     const KIND: Kind = Kind::Dynamic;
     const FLUID: usize = 3;
 
-    const IN_LENGTH: bool = false;
-
     #[inline(always)]
     fn new(constants: Constants<V>) -> Self {
         let clock = Clock { length: V::splat(0.0), time: V::splat(1.0) };
@@ -106,23 +101,10 @@ impl<V: Lanes> Model<V, { dynamic::STATES }> for Dynamic<V> {
         self.any_cross = any;
     }
 
-    /// At rest on the line, both bodies rising.
     #[inline(always)]
-    fn start<T: Lanes>(k: &Constants<T>) -> [T; dynamic::STATES] {
-        let (zero, warm) = (T::splat(0.0), k.initial_temperature);
-        [zero, k.rise_speed, zero, warm, warm, warm, zero]
-    }
-
-    /// A fraction of the fast time constant `(M η (1 − η) + J/p)/κ`, or of the time that the load alone
-    /// would need for the whole line.
-    #[inline(always)]
-    fn first_step(k: &Constants<f64>) -> f64 {
-        let fluidity = exp(k.minus_viscosity_temperature / k.initial_temperature);
-        let p = k.full_radius_squared;
-        let mass = k.total_mass * k.payload_share * (1.0 - k.payload_share) + k.inertia / p;
-        let relaxation = mass * p * (k.inverse_torque * fluidity);
-        let free_fall = (k.length * mass / k.weight).sqrt();
-        0.3 * if relaxation < free_fall { relaxation } else { 0.1 * free_fall }
+    fn start(constants: &Constants<V>, local_tolerance: f64) -> Start<V, { dynamic::STATES }> {
+        let (fits, beyond) = initial_layer::passed(constants, local_tolerance);
+        Start::select(fits, beyond, start::at_rest(constants))
     }
 
     #[inline(always)]
@@ -169,8 +151,6 @@ impl<V: Lanes> Model<V, { quasi_steady::STATES }> for QuasiSteady<V> {
     const KIND: Kind = Kind::QuasiSteady;
     const FLUID: usize = 1;
 
-    const IN_LENGTH: bool = true;
-
     #[inline(always)]
     fn new(constants: Constants<V>) -> Self {
         let clock = Clock { length: V::splat(1.0), time: V::splat(0.0) };
@@ -193,20 +173,10 @@ impl<V: Lanes> Model<V, { quasi_steady::STATES }> for QuasiSteady<V> {
     }
 
     #[inline(always)]
-    fn start<T: Lanes>(k: &Constants<T>) -> [T; quasi_steady::STATES] {
-        let (zero, warm) = (T::splat(0.0), k.initial_temperature);
-        [zero, warm, warm, warm, zero]
+    fn start(constants: &Constants<V>, _: f64) -> Start<V, { quasi_steady::STATES }> {
+        start::in_balance(constants)
     }
-    /// A fraction of the way made while the fluid's temperature relaxes: a longer one can hide from the
-    /// error estimate.
-    #[inline(always)]
-    fn first_step(k: &Constants<f64>) -> f64 {
-        let fluidity = exp(k.minus_viscosity_temperature / k.initial_temperature);
-        let velocity = k.full_radius_squared * k.weight * (k.inverse_torque * fluidity);
-        let way = 0.25 * velocity / (k.fluid_rotor_1 + k.fluid_housing_1);
-        let most = 0.01 * k.length;
-        if way > 0.0 && way < most { way } else { most }
-    }
+
     #[inline(always)]
     fn velocity(moment: &quasi_steady::Moment<V>) -> V {
         moment.v

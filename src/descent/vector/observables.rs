@@ -33,12 +33,12 @@ pub struct Peaks<V> {
 }
 
 impl<V: Lanes> Peaks<V> {
-    /// Nothing seen yet.
-    pub fn new() -> Self {
+    /// Nothing seen yet but some largest values.
+    pub fn new(values: [V; OBSERVABLES]) -> Self {
         let zero = V::splat(0.0);
         let none = [zero; OBSERVABLES];
         Peaks {
-            values: [V::splat(f64::NEG_INFINITY); OBSERVABLES],
+            values,
             start: none,
             slopes: none,
             step: zero,
@@ -48,10 +48,11 @@ impl<V: Lanes> Peaks<V> {
         }
     }
 
-    /// Forgets what a lane has seen.
-    pub fn clear_lane(&mut self, lane: usize) {
-        for n in 0..OBSERVABLES {
-            self.values[n].lanes_mut()[lane] = f64::NEG_INFINITY;
+    /// Lets a lane have seen nothing but the largest values in a lane of others.
+    #[inline(always)]
+    pub fn restart(&mut self, lane: usize, values: &[V; OBSERVABLES], from: usize) {
+        for (value, others) in self.values.iter_mut().zip(values) {
+            value.lanes_mut()[lane] = others.lanes()[from];
         }
         self.step.lanes_mut()[lane] = 0.0;
     }
@@ -80,13 +81,19 @@ impl<V: Lanes> Peaks<V> {
         self.stiff * self.clock.pace(v)
     }
 
-    /// Takes in the values where the step ended, with their derivatives in time there.
+    /// Takes in the values where the step ended, if they are real, with their derivatives in time there.
     #[inline(always)]
-    pub fn arrive(&mut self, v: V, end: &[V; OBSERVABLES], end_slopes: &[V; OBSERVABLES]) {
+    pub fn arrive(
+        &mut self,
+        real: V::Mask,
+        v: V,
+        end: &[V; OBSERVABLES],
+        end_slopes: &[V; OBSERVABLES],
+    ) {
         let zero = V::splat(0.0);
         let moved = zero.lt(self.step);
         for n in 0..OBSERVABLES {
-            self.values[n] = end[n].max(self.values[n]);
+            self.values[n] = V::select(real, end[n].max(self.values[n]), self.values[n]);
             let turned = moved.and(zero.lt(self.slopes[n])).and(end_slopes[n].lt(zero));
             if turned.any() {
                 let d0 = self.step * self.slopes[n] * self.start_rate;

@@ -46,10 +46,10 @@ fn run<M: Model<Tangent<DIRECTIONS>, N>, const N: usize>(
     let values = Constants::possible(plain).ok_or(Fault::ImpossibleInput)?;
     let constants =
         Constants::new(coefficients).map(|dual| Tangent { value: dual.value, slopes: dual.slopes });
-    let state = M::start(&constants);
-    let step = Tangent { value: M::first_step(&values), slopes: [0.0; DIRECTIONS] };
     let tolerance = settings.local_tolerance(M::KIND);
-    let mut group = Group::<_, M, N>::new(M::new(constants), state, step, tolerance);
+    let mut start = M::start(&constants, tolerance);
+    start.step.slopes = [0.0; DIRECTIONS];
+    let mut group = Group::<_, M, N>::new(M::new(constants), &start, tolerance);
     group.model.set_any_cross(values.cross_on > 0.5);
     loop {
         let moment = group.look();

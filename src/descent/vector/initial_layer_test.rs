@@ -1,0 +1,91 @@
+//! The initial layer against fine steps from rest.
+
+use super::super::rosenbrock;
+use super::super::start::at_rest;
+use super::*;
+use crate::physics::{Coefficients, Design, Parameter, Target};
+
+/// The baseline with its viscosity times a factor, at another temperature.
+fn constants(viscosity: f64, temperature_k: f64) -> Constants<f64> {
+    let mut design = Design::baseline();
+    let nominal = design.get(Parameter::FluidNominalViscosity);
+    design.set(Target::whole(Parameter::FluidNominalViscosity), nominal * viscosity);
+    design.set(Target::whole(Parameter::InitialTemperature), temperature_k);
+    Constants::new(&Coefficients::new(&design))
+}
+
+/// State and largest tension after thirty time constants in `steps` equal steps.
+fn integrate(
+    k: &Constants<f64>,
+    from: [f64; STATES],
+    tau: f64,
+    steps: u32,
+) -> ([f64; STATES], f64) {
+    let clock = Clock { length: 0.0, time: 1.0 };
+    let system = Dynamic { constants: *k, clock, any_cross: false };
+    let (mut y, mut tension) = (from, 0.0f64);
+    for _ in 0..steps {
+        let moment = system.moment(&y);
+        tension = tension.max(system.observe(&y, &moment)[1]);
+        y = rosenbrock::step(&system, &y, &moment, 30.0 * tau / f64::from(steps)).state;
+    }
+    (y, tension)
+}
+
+#[test]
+fn property_the_outer_solution_is_met_when_the_layer_has_passed() {
+    let mut met = 0;
+    for viscosity in [0.6, 0.8, 1.0, 1.5, 3.0, 10.0] {
+        for temperature_k in [260.0, 280.0, 300.0] {
+            let k = constants(viscosity, temperature_k);
+            let layer = Layer::new(&k);
+            let (outcomes, peaks) = layer.left_out(&k);
+            if outcomes > 1e-4 {
+                continue;
+            }
+            met += 1;
+            let start = layer.state(&k);
+            let (real, tension) = integrate(&k, at_rest(&k).state, layer.tau, 4000);
+            let (outer, _) = integrate(&k, start, layer.tau, 4000);
+            let b = -k.minus_viscosity_temperature / (real[3] * real[3]);
+            // What a difference does to time, velocity and temperature, as in the error norm.
+            let line = (outer[0] - real[0]).abs() / k.length;
+            let heat = 0.15 * b * (outer[3] - real[3]).abs() + b * (outer[4] - real[4]).abs();
+            let pull = 0.01 * (outer[2] / real[2] - 1.0).abs();
+            let off = line + heat + pull;
+            assert!(off <= outcomes, "{viscosity} {temperature_k}: {off:e} for {outcomes:e}");
+            let off = (layer.peaks(&k, &start)[1] / tension - 1.0).abs();
+            assert!(off <= 1.1 * peaks, "{viscosity} {temperature_k}: {off:e} for {peaks:e}");
+        }
+    }
+    assert!(met >= 12, "{met} cases lie within the expansion's reach");
+}
+
+/// The expansion's coefficients: with every other small number out of the way, what is left out of the way
+/// and the warming falls with the square of `ε`.
+#[test]
+fn analytic_what_is_left_out_is_of_second_order() {
+    let off = |viscosity: f64| {
+        let mut k = constants(viscosity, 290.0);
+        k.extraction = 0.0;
+        k.share_slope = 0.0;
+        k.radius_slope = 0.0;
+        k.spool_pull = 0.0;
+        k.drag = 0.0;
+        k.free_lift = 0.0;
+        k.fluid_rotor_1 = 0.0;
+        k.fluid_housing_1 = 0.0;
+        let layer = Layer::new(&k);
+        let (real, _) = integrate(&k, at_rest(&k).state, layer.tau, 8000);
+        let (outer, _) = integrate(&k, layer.state(&k), layer.tau, 8000);
+        let way = (outer[0] - real[0]) / layer.way;
+        let warming = (outer[3] - real[3]) / layer.heat;
+        (layer.eps, way.abs(), warming.abs())
+    };
+    let (thick, thin) = (off(4.0), off(2.0));
+    let ratio = (thin.0 / thick.0).ln();
+    for (large, small) in [(thin.1, thick.1), (thin.2, thick.2)] {
+        let order = (large / small).ln() / ratio;
+        assert!((1.8..2.4).contains(&order), "order {order}: {small:e}, {large:e}");
+    }
+}
