@@ -1,6 +1,7 @@
 //! From draws to outcomes: the coefficients of each sample, integrated in batches.
 
 use super::Progress;
+use crate::descent::vector::Draws;
 use crate::descent::{self, Fault, Model, Outcome};
 use crate::error::Result;
 use crate::numerics::columns::Columns;
@@ -168,9 +169,9 @@ impl<'a> Ensemble<'a> {
 
     /// Integrates the rows of a table from its inputs. An impossible draw is a fault of its row.
     fn integrate(&self, table: &mut OutcomeTable, scratch: &mut Scratch) {
-        let Scratch { coefficients, results, .. } = scratch;
-        let mut design = self.design.clone();
-        let mut possible = vec![true; table.rows()];
+        let Scratch { possible, results, .. } = scratch;
+        possible.clear();
+        possible.resize(table.rows(), true);
         if self.checks_are_separate {
             for (j, target) in self.targets.iter().enumerate() {
                 let info = target.parameter.info();
@@ -178,50 +179,31 @@ impl<'a> Ensemble<'a> {
                     *possible &= info.admits(value);
                 }
             }
-        }
-        coefficients.clear();
-        let mut rows = Vec::with_capacity(table.rows());
-        // A few rows at a time, each column's side by side: columns are a power of two apart, so that row by
-        // row they would drive each other out of the cache.
-        let width = self.targets.len();
-        let mut draws = vec![0.0; ABREAST * width];
-        for first in (0..table.rows()).step_by(ABREAST) {
-            let count = ABREAST.min(table.rows() - first);
-            for j in 0..width {
-                let values = &table.inputs.column(j)[first..first + count];
-                for (row, &value) in values.iter().enumerate() {
-                    draws[row * width + j] = value;
+        } else {
+            let mut design = self.design.clone();
+            for (k, possible) in possible.iter_mut().enumerate() {
+                for (j, &target) in self.targets.iter().enumerate() {
+                    design.set(target, table.inputs.get(k, j));
                 }
-            }
-            for k in first..first + count {
-                for (&target, &value) in self.targets.iter().zip(&draws[(k - first) * width..]) {
-                    design.set(target, value);
-                }
-                if possible[k] && (self.checks_are_separate || design.is_possible()) {
-                    coefficients.push(Coefficients::new(&design));
-                    rows.push(k);
-                } else {
-                    table.record(k, Err(Fault::ImpossibleInput));
-                }
+                *possible = design.is_possible();
             }
         }
         results.clear();
-        results.resize(rows.len(), Err(Fault::NotFinite));
-        descent::descend_batch(self.model, self.tolerance, coefficients, results);
-        for (k, &result) in rows.into_iter().zip(results.iter()) {
+        results.resize(table.rows(), Err(Fault::NotFinite));
+        let draws =
+            Draws { design: self.design, targets: &self.targets, inputs: &table.inputs, possible };
+        descent::descend_draws(self.model, self.tolerance, draws, results);
+        for (k, &result) in results.iter().enumerate() {
             table.record(k, result);
         }
     }
 }
 
-/// Rows whose inputs are gathered at a time.
-const ABREAST: usize = 8;
-
 /// What a thread uses again for its next batch.
 #[derive(Default)]
 struct Scratch {
     uniforms: Columns,
-    coefficients: Vec<Coefficients<f64>>,
+    possible: Vec<bool>,
     results: Vec<std::result::Result<Outcome, Fault>>,
 }
 

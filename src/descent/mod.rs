@@ -21,3 +21,13 @@ pub fn descend_batch(
 ) {
     vector::descend(model, &vector::Settings { tolerance }, batch, results);
 }
+
+/// Integrates draws of a design's parameters by the vector integrator: `results[k]` is what becomes of row `k`.
+pub fn descend_draws(
+    model: Model,
+    tolerance: f64,
+    draws: vector::Draws,
+    results: &mut [Result<Outcome, Fault>],
+) {
+    vector::descend_draws(model, &vector::Settings { tolerance }, draws, results);
+}

@@ -20,6 +20,7 @@ pub struct Balloon<R> {
 
 impl<R: Real> Balloon<R> {
     /// The tow balloon of a design, carrying the whole payload before release.
+    #[inline(always)]
     pub fn new(design: &Design<R>) -> Self {
         let get = |parameter| design.get(parameter);
         let own_weight = get(Parameter::BalloonMass) * R::constant(GRAVITY);

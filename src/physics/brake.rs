@@ -16,14 +16,17 @@ pub struct Brake<R> {
 
 impl<R: Real> Brake<R> {
     /// The brake of a design.
+    #[inline(always)]
     pub fn new(design: &Design<R>) -> Self {
         let outer = design.get(Parameter::BrakeOuterRadius);
         let inner = design.get(Parameter::BrakeInnerRadius);
         let fourth = |r: R| (r * r) * (r * r);
         let fourths = fourth(outer) - fourth(inner);
         let fifths = fourth(outer) * outer - fourth(inner) * inner;
-        let inverse_gaps =
-            design.gaps().iter().fold(R::constant(0.0), |sum, &gap| sum + R::constant(1.0) / gap);
+        let mut inverse_gaps = R::constant(0.0);
+        for &gap in design.gaps() {
+            inverse_gaps = inverse_gaps + R::constant(1.0) / gap;
+        }
         let surfaces = R::constant(design.surfaces() as f64);
         Brake {
             torque_factor_m3: R::constant(std::f64::consts::FRAC_PI_2) * fourths * inverse_gaps,

@@ -29,6 +29,7 @@ pub struct Coefficients<R> {
 
 impl<R: Real> Coefficients<R> {
     /// The constants of a design; `shear_thinning` says whether its Cross time constant is positive.
+    #[inline(always)]
     pub fn with_shear_thinning(design: &Design<R>, shear_thinning: bool) -> Self {
         let brake = Brake::new(design);
         Coefficients {
@@ -49,11 +50,13 @@ macro_rules! fields {
 
         impl<R: Real> Coefficients<R> {
             /// All constants in a row, in the order that [`Coefficients::from_fields`] takes them.
+            #[inline(always)]
             pub fn fields(&self) -> [R; FIELD_COUNT] {
                 [$($(self.$part.$name,)*)* self.initial_temperature_k]
             }
 
             /// The constants out of a row of them: how several descents are laid side by side.
+            #[inline(always)]
             pub fn from_fields(fields: [R; FIELD_COUNT], shear_thinning: bool) -> Self {
                 let [$($($name,)*)* initial_temperature_k] = fields;
                 Coefficients {

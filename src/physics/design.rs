@@ -75,16 +75,19 @@ impl<R: Real> Design<R> {
     }
 
     /// Value of a parameter; for the gap, the nominal one (see [`Design::gaps`]).
+    #[inline(always)]
     pub fn get(&self, parameter: Parameter) -> R {
         self.values[parameter as usize]
     }
 
     /// The gap of every working surface, m; there are 2n.
+    #[inline(always)]
     pub fn gaps(&self) -> &[R] {
         &self.gaps
     }
 
     /// Number of working surfaces, 2n.
+    #[inline(always)]
     pub fn surfaces(&self) -> usize {
         self.gaps.len()
     }
@@ -99,6 +102,7 @@ impl<R: Real> Design<R> {
 
     /// Sets a value. The gap as a whole sets every surface's. A surface beyond the last is ignored:
     /// the study checks that it exists.
+    #[inline(always)]
     pub fn set(&mut self, target: Target, value: R) {
         match target.surface {
             Some(surface) => {

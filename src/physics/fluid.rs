@@ -28,6 +28,7 @@ const INVERSION_STEPS: usize = 12;
 
 impl<R: Real> Fluid<R> {
     /// The fluid of a design; `shear_thinning` says whether the design's `λ` is positive.
+    #[inline(always)]
     pub fn new(design: &Design<R>, brake: &Brake<R>, shear_thinning: bool) -> Self {
         let get = |parameter| design.get(parameter);
         let thickness =

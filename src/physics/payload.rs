@@ -15,6 +15,7 @@ pub struct Payload<R> {
 
 impl<R: Real> Payload<R> {
     /// The payload of a design.
+    #[inline(always)]
     pub fn new(design: &Design<R>) -> Self {
         Payload {
             weight_n: design.get(Parameter::PayloadWeight),

@@ -19,6 +19,7 @@ pub struct Reel<R> {
 
 impl<R: Real> Reel<R> {
     /// The reel of a design.
+    #[inline(always)]
     pub fn new(design: &Design<R>) -> Self {
         let length = design.get(Parameter::ReelLineLength);
         let full = design.get(Parameter::ReelFullRadius);

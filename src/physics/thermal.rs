@@ -27,6 +27,7 @@ pub struct Thermal<R> {
 
 impl<R: Real> Thermal<R> {
     /// The thermal model of a design.
+    #[inline(always)]
     pub fn new(design: &Design<R>) -> Self {
         let get = |parameter| design.get(parameter);
         Thermal {

@@ -1,8 +1,11 @@
 //! The vector integrator against the reference integrator, and what its results may not depend on.
 
 use super::vector_members::{default_study, stress};
-use reeldown::descent::vector::{Counts, InstructionSet, Settings, descend, descend_with};
+use reeldown::descent::vector::{
+    Counts, Draws, InstructionSet, Settings, descend, descend_draws, descend_with,
+};
 use reeldown::descent::{Fault, Model, Outcome, reference};
+use reeldown::numerics::columns::Columns;
 use reeldown::physics::{Coefficients, Design, Parameter, Target};
 
 type Results = Vec<Result<Outcome, Fault>>;
@@ -98,6 +101,60 @@ fn property_results_do_not_depend_on_lane_mates_order_chunks_or_instruction_set(
             }
             assert!(bits(&chunked) == alone, "{model:?} {set:?} in chunks");
         }
+    }
+}
+
+/// Draws worked out in lanes give the bits of the designs worked out one by one, thinning and impossible ones among
+/// them.
+#[test]
+fn property_draws_have_the_bits_of_their_designs() {
+    let base = Design::baseline();
+    let targets = [
+        Target::gap(0),
+        Target::gap(9),
+        Target::whole(Parameter::FluidNominalViscosity),
+        Target::whole(Parameter::FluidCrossTimeConstant),
+        Target::whole(Parameter::FluidCrossExponent),
+        Target::whole(Parameter::BalloonMass),
+        Target::whole(Parameter::PayloadWeight),
+        Target::whole(Parameter::ReelEmptyRadius),
+    ];
+    let mut inputs = Columns::new(53, targets.len());
+    let mut design = base.clone();
+    let (mut batch, mut possible) = (Vec::new(), Vec::new());
+    for k in 0..inputs.rows() {
+        for (j, &target) in targets.iter().enumerate() {
+            let spread = 1.0 + 0.2 * (((7 * k + 3 * j + 1) % 11) as f64 / 10.0 - 0.5);
+            let value = match target.parameter {
+                Parameter::FluidCrossTimeConstant => 0.01 * (k % 3) as f64,
+                Parameter::FluidCrossExponent => 0.7 * spread,
+                _ => base.at(target) * spread,
+            };
+            inputs.set(k, j, value);
+            design.set(target, value);
+        }
+        if k == 20 {
+            // Nobody has told that this one is impossible.
+            inputs.set(k, 0, f64::NAN);
+            design.set(targets[0], f64::NAN);
+        }
+        possible.push(k % 17 != 5);
+        batch.push(Coefficients::new(&design));
+    }
+    let settings = Settings { tolerance: 1e-6 };
+    for model in Model::ALL {
+        let (mut one_by_one, _) = run(model, 1e-6, &batch);
+        for (result, _) in one_by_one.iter_mut().zip(&possible).filter(|(_, possible)| !**possible)
+        {
+            *result = Err(Fault::ImpossibleInput);
+        }
+        let mut drawn = vec![Err(Fault::NotFinite); batch.len()];
+        let draws =
+            Draws { design: &base, targets: &targets, inputs: &inputs, possible: &possible };
+        descend_draws(model, &settings, draws, &mut drawn);
+        assert_eq!(drawn[20], Err(Fault::ImpossibleInput));
+        assert_eq!(drawn.iter().filter(|result| result.is_err()).count(), 4, "{model:?}");
+        assert!(bits(&drawn) == bits(&one_by_one), "{model:?}");
     }
 }
 

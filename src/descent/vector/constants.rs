@@ -22,12 +22,6 @@ macro_rules! constants {
         }
 
         impl<V: Lanes> Constants<V> {
-            /// The same constants in every lane.
-            #[inline(always)]
-            pub fn splat(one: &Constants<f64>) -> Self {
-                Constants { $($name: V::splat(one.$name),)* }
-            }
-
             /// Sets one lane's constants to those in a lane of others.
             #[inline(always)]
             pub fn copy_lane(&mut self, lane: usize, others: &Constants<V>, from: usize) {

@@ -1,5 +1,6 @@
 //! Which instruction set runs the kernel.
 
+use super::batch::Batch;
 use super::dynamic::Dynamic;
 use super::quasi_steady::QuasiSteady;
 use super::queue::run;
@@ -7,14 +8,13 @@ use super::settings::{Counts, Settings};
 use crate::descent::model::Model;
 use crate::descent::outcome::{Fault, Outcome};
 use crate::numerics::lanes::{InstructionSet, Lanes};
-use crate::physics::Coefficients;
 
 /// Runs the kernel of a model with an instruction set, or portably where the machine lacks it.
 pub(super) fn dispatch(
     set: InstructionSet,
     model: Model,
     settings: &Settings,
-    batch: &[Coefficients<f64>],
+    batch: Batch,
     results: &mut [Result<Outcome, Fault>],
 ) -> Counts {
     match set {
@@ -37,7 +37,7 @@ pub(super) fn dispatch(
 fn avx512(
     model: Model,
     settings: &Settings,
-    batch: &[Coefficients<f64>],
+    batch: Batch,
     results: &mut [Result<Outcome, Fault>],
 ) -> Counts {
     type Octets = crate::numerics::lanes::Pair<crate::numerics::lanes::avx512::Octet>;
@@ -49,7 +49,7 @@ fn avx512(
 fn avx2(
     model: Model,
     settings: &Settings,
-    batch: &[Coefficients<f64>],
+    batch: Batch,
     results: &mut [Result<Outcome, Fault>],
 ) -> Counts {
     type Quartets = crate::numerics::lanes::Pair<crate::numerics::lanes::avx2::Quartet>;
@@ -60,7 +60,7 @@ fn avx2(
 fn with_lanes<V: Lanes>(
     model: Model,
     settings: &Settings,
-    batch: &[Coefficients<f64>],
+    batch: Batch,
     results: &mut [Result<Outcome, Fault>],
 ) -> Counts {
     match model {

@@ -1,5 +1,6 @@
 //! The queue: lanes are refilled as they finish, so that a slow descent does not hold its mates idle.
 
+use super::batch::Batch;
 use super::group::Group;
 use super::model::Model;
 use super::ready::Ready;
@@ -7,7 +8,6 @@ use super::rosenbrock::STAGES;
 use super::settings::{Counts, Settings};
 use crate::descent::outcome::{Fault, Outcome};
 use crate::numerics::lanes::Lanes;
-use crate::physics::Coefficients;
 
 /// Widest lane type: two AVX-512 registers.
 const WIDEST: usize = 16;
@@ -16,12 +16,12 @@ const WIDEST: usize = 16;
 #[inline(always)]
 pub fn run<V: Lanes, M: Model<V, N>, const N: usize>(
     settings: &Settings,
-    batch: &[Coefficients<f64>],
+    batch: Batch,
     results: &mut [Result<Outcome, Fault>],
 ) -> Counts {
     let mut counts = Counts::default();
     let tolerance = settings.local_tolerance(M::KIND);
-    let Some(mut ready) = Ready::<V, N>::new(batch, tolerance) else { return counts };
+    let mut ready = Ready::<V, N>::new(batch, tolerance);
     let mut group = ready.group::<M>();
     let mut sample = [0; WIDEST];
     let mut live = 0u32;

@@ -3,6 +3,7 @@
 //! A descent's constants, its start and its first step are worked out side by side, so that refilling a lane
 //! is a copy: worked out one by one they cost as much as three steps.
 
+use super::batch::{Batch, Source};
 use super::constants::Constants;
 use super::group::Group;
 use super::model::Model;
@@ -13,7 +14,9 @@ use crate::physics::{Coefficients, FIELD_COUNT};
 
 /// The descents of a batch that are waiting, the next of them ready.
 pub struct Ready<'a, V, const N: usize> {
-    batch: &'a [Coefficients<f64>],
+    source: Source<'a, V>,
+    /// Number of descents in the batch.
+    length: usize,
     /// Where in the batch the prepared ones begin and end, and the next of them.
     first: usize,
     end: usize,
@@ -26,58 +29,48 @@ pub struct Ready<'a, V, const N: usize> {
 }
 
 impl<'a, V: Lanes, const N: usize> Ready<'a, V, N> {
-    /// The whole batch waiting, none of it ready; nothing if it is empty.
+    /// The whole batch waiting, none of it ready.
     #[inline(always)]
-    pub fn new(batch: &'a [Coefficients<f64>], local_tolerance: f64) -> Option<Self> {
-        let constants = Constants::splat(&Constants::new(batch.first()?));
-        let starts = Start::nowhere();
-        Some(Ready {
-            batch,
+    pub fn new(batch: Batch<'a>, local_tolerance: f64) -> Self {
+        let nothing = [Wide(V::splat(0.0)); FIELD_COUNT];
+        Ready {
+            source: batch.source(),
+            length: batch.len(),
             first: 0,
             end: 0,
             next: 0,
             possible: 0,
-            constants,
-            starts,
+            constants: Constants::new(&Coefficients::from_fields(nothing, false))
+                .map(|wide| wide.0),
+            starts: Start::nowhere(),
             local_tolerance,
-        })
+        }
     }
 
-    /// A group to be filled: of the batch's first descent's constants, standing nowhere.
+    /// A group to be filled, whose lanes stand nowhere.
     #[inline(always)]
     pub fn group<M: Model<V, N>>(&self) -> Group<V, M, N> {
         Group::new(M::new(self.constants), &self.starts, self.local_tolerance)
     }
 
-    /// Works out the next descents of the batch, which has some; lanes too many repeat the last.
+    /// Works out the next descents of the batch, which has some.
     #[inline(always)]
     fn prepare<M: Model<V, N>>(&mut self) {
         self.first = self.end;
         self.next = self.end;
-        self.end = self.batch.len().min(self.first + V::WIDTH);
-        let mut fields = [Wide(V::splat(0.0)); FIELD_COUNT];
-        let mut thins = false;
-        for lane in 0..V::WIDTH {
-            let one = &self.batch[(self.first + lane).min(self.end - 1)];
-            for (field, value) in fields.iter_mut().zip(one.fields()) {
-                field.0.lanes_mut()[lane] = value;
-            }
-            thins |= one.fluid.shear_thinning;
-        }
-        let side_by_side = Coefficients::from_fields(fields, thins);
-        self.constants = Constants::new(&side_by_side).map(|wide| wide.0);
-        if thins {
-            for lane in 0..self.end - self.first {
-                let one = &self.batch[self.first + lane];
-                if !one.fluid.shear_thinning {
-                    self.constants.set_newtonian(lane);
-                }
+        self.end = self.length.min(self.first + V::WIDTH);
+        let some = self.source.abreast(self.first..self.end);
+        self.constants = Constants::new(&some.coefficients).map(|wide| wide.0);
+        if some.thins != 0 {
+            for lane in (0..V::WIDTH).filter(|lane| some.thins & (1 << lane) == 0) {
+                self.constants.set_newtonian(lane);
             }
         }
-        let heat = &side_by_side.thermal;
+        let heat = &some.coefficients.thermal;
         let capacities = [heat.rotor_capacity_j_per_k.0, heat.housing_capacity_j_per_k.0];
-        let moving_mass = side_by_side.balloon.moving_mass_kg.0;
-        self.possible = self.constants.possible_lanes(moving_mass, capacities).bits();
+        let moving_mass = some.coefficients.balloon.moving_mass_kg.0;
+        let possible = self.constants.possible_lanes(moving_mass, capacities).bits();
+        self.possible = possible & !some.impossible;
         self.starts = M::start(&self.constants, self.local_tolerance);
     }
 
@@ -90,7 +83,7 @@ impl<'a, V: Lanes, const N: usize> Ready<'a, V, N> {
     ) -> Option<(usize, usize)> {
         loop {
             if self.next == self.end {
-                if self.end == self.batch.len() {
+                if self.end == self.length {
                     return None;
                 }
                 self.prepare::<M>();
