@@ -9,6 +9,7 @@ mod disk;
 mod errors;
 mod inspection;
 mod interruption;
+mod notes;
 mod program;
 mod published;
 mod readers;
