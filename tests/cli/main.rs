@@ -4,6 +4,7 @@ mod acceptance;
 mod artefacts;
 mod calibrate;
 mod comparing;
+mod dependence;
 mod determinism;
 mod disk;
 mod errors;
