@@ -8,6 +8,7 @@ mod dependence;
 mod determinism;
 mod disk;
 mod errors;
+mod few_breaches;
 mod inspection;
 mod interruption;
 mod notes;
