@@ -2,7 +2,7 @@
 
 use super::calibrate_arguments::CalibrateArguments;
 use super::figure_files::write_figures;
-use super::output::{say, say_error};
+use super::output::{say, say_error, say_notes};
 use super::run::quoted;
 use super::{Ending, done};
 use crate::campaign::calibration::{self, Calibration, Channel, Options, is_hardware};
@@ -41,6 +41,7 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
     for name in [FINDINGS, REPORT, POSTERIOR, CARD, LAWS] {
         refuse_obstacle(&directory.join(name))?;
     }
+    say_notes(&study);
     let runs = load(&arguments.data)?;
     let held_out = load(&arguments.hold_out)?;
     let mut all: Vec<&MeasuredRun> = runs.iter().map(|(run, _)| run).collect();

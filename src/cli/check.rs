@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::reliability::adaptive::Until;
 use crate::render::table;
 use crate::study::Study;
+use crate::units::number;
 
 /// Validates a study and shows it.
 pub(super) fn check(arguments: &CheckArguments) -> Result<Ending> {
@@ -28,6 +29,16 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<Ending> {
     });
     let header = ["input", "nominal", "law", "nature", "known", "source"];
     text += &format!("{}\n\n", table(&header, 0..0, rows, None));
+    for correlation in study.resolved_correlations() {
+        text += &format!(
+            "correlation: {}: {} {} ({} between normal scores, by a Gaussian copula); {}\n",
+            correlation.inputs(),
+            correlation.measure.name(),
+            correlation.measure.value(),
+            number(correlation.measure.normal_correlation(), 4),
+            correlation.source
+        );
+    }
     for limit in &study.limits {
         text += &format!("limit: {} {} {}\n", limit.outcome.name(), limit.kind.name(), limit.text);
     }
@@ -83,6 +94,20 @@ fn json(study: &Study) -> serde_json::Value {
             })
         })
         .collect();
+    let correlations: Vec<serde_json::Value> = study
+        .resolved_correlations()
+        .into_iter()
+        .map(|correlation| {
+            serde_json::json!({
+                "between": correlation.between,
+                "pairs": correlation.pairs,
+                "kind": correlation.measure.name(),
+                "coefficient": correlation.measure.value(),
+                "normal_correlation": correlation.measure.normal_correlation(),
+                "source": correlation.source,
+            })
+        })
+        .collect();
     let limits: Vec<serde_json::Value> = study
         .limits
         .iter()
@@ -99,6 +124,7 @@ fn json(study: &Study) -> serde_json::Value {
         "title": study.title,
         "model": study.model.name(),
         "inputs": inputs,
+        "correlations": correlations,
         "limits": limits,
         "requirement": study.requirement.map(|r| serde_json::json!({
             "reliability": r.reliability,

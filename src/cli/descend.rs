@@ -8,7 +8,8 @@ use crate::descent::{Fault, Model, Outcome, OutcomeQuantity};
 use crate::error::{Error, Result};
 use crate::findings;
 use crate::physics::motion::OBSERVABLES;
-use crate::physics::{Coefficients, Design};
+use crate::physics::parameters::PARAMETERS;
+use crate::physics::{Coefficients, Design, Parameter};
 use crate::render::{paper_figures, table};
 use crate::store::{Field, write_table};
 use crate::study::Study;
@@ -44,27 +45,46 @@ pub(super) fn descend(arguments: &DescendArguments) -> Result<Ending> {
 
 /// Draws the paper's figures, from the steady solution as the paper does.
 fn draw(design: &Design, directory: &Path) -> Result<()> {
-    let runs = findings::paper_runs(design, Model::QuasiSteady).map_err(cannot_integrate)?;
+    let runs = findings::paper_runs(design, Model::QuasiSteady)
+        .map_err(|fault| cannot_integrate(design, fault))?;
     write_figures(directory, &paper_figures(&runs))
 }
 
-fn cannot_integrate(fault: Fault) -> Error {
-    Error::argument(format!("the descent cannot be integrated: {}", fault.name()))
+/// A fault, with the value that is likeliest to have caused it: the one whose ratio to the paper's brake's is
+/// farthest from one.
+fn cannot_integrate(design: &Design, fault: Fault) -> Error {
+    let baseline = Design::baseline();
+    let departure = |parameter: Parameter| {
+        let (here, paper): (f64, f64) = (design.get(parameter), baseline.get(parameter));
+        Some((here / paper).max(paper / here)).filter(|ratio| ratio.is_finite() && *ratio > 1.0)
+    };
+    let all = PARAMETERS.iter().map(|info| info.parameter);
+    let far = all.filter_map(|parameter| Some((parameter, departure(parameter)?)));
+    let advice = far.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(String::new(), |(parameter, _)| {
+        let info = parameter.info();
+        format!(
+            "; {} = {} is farthest from the paper's brake, which has {}: is it meant, and in that unit?",
+            info.path,
+            engineering(design.get(parameter), info.quantity),
+            info.baseline_text
+        )
+    });
+    Error::argument(format!("the descent cannot be integrated: {}{advice}", fault.name()))
 }
 
 /// Integrates a design by the plain integrator, writing its course if asked to.
 pub(super) fn integrate(design: &Design, model: Model, trace: Option<&Path>) -> Result<Outcome> {
     let coefficients = Coefficients::new(design);
+    let failed = |fault| cannot_integrate(design, fault);
     let Some(path) = trace else {
-        return reference::descend(&coefficients, model, REFERENCE_TOLERANCE)
-            .map_err(cannot_integrate);
+        return reference::descend(&coefficients, model, REFERENCE_TOLERANCE).map_err(failed);
     };
     let Trajectory { samples, .. } =
         reference::trajectory(&coefficients, model, REFERENCE_TOLERANCE, TRACE_STEP_S)
-            .map_err(cannot_integrate)?;
+            .map_err(failed)?;
     write_trace(path, model.name(), &samples)?;
     // The outcome is that of the descent without a limit on its steps, whatever is traced.
-    reference::descend(&coefficients, model, REFERENCE_TOLERANCE).map_err(cannot_integrate)
+    reference::descend(&coefficients, model, REFERENCE_TOLERANCE).map_err(failed)
 }
 
 /// Writes the course of a descent or of a run on the rig.

@@ -58,6 +58,11 @@ impl From<Ending> for ExitCode {
 /// Reads the command line and carries it out. Usage errors exit with 2, by clap.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    if let Some(Command::Rig(rig)) = &arguments.command
+        && let Err(usage) = rig.consistent()
+    {
+        usage.exit();
+    }
     figure_files::ask_for_png(arguments.png);
     match carry_out(arguments) {
         Ok(ending) => ending.into(),

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::render::Style;
+use crate::study::Study;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 
 /// Prints a text and a line end to standard output. A reader who has gone away is not an error.
@@ -23,6 +24,13 @@ pub(super) fn say(text: &str) -> Result<()> {
 pub(super) fn say_error(text: &str) {
     // Where standard error is gone too there is nobody to tell.
     let _ = writeln!(io::stderr().lock(), "{}", text.trim_end_matches('\n'));
+}
+
+/// Says on standard error what a reader should know about how a study was understood.
+pub(super) fn say_notes(study: &Study) {
+    for note in &study.notes {
+        say_error(&format!("note: {note}"));
+    }
 }
 
 /// Colour on a terminal, unless `NO_COLOR` is set to something.

@@ -40,6 +40,8 @@ pub(super) fn paper(arguments: &PaperArguments) -> Result<Ending> {
         finding.statements.len(),
         table(&["", "where", "the paper says", "here"], 0..0, rows, Some(118))
     );
+    text +=
+        &format!("\nBy the {} model, but for the dynamic curve of Fig. 4.\n", finding.modes.model);
     for statement in finding.statements.iter().filter(|statement| !statement.agrees) {
         if let Some(remark) = &statement.remark {
             text += &format!("\n{}: {remark}.\n", statement.place);

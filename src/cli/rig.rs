@@ -2,6 +2,7 @@
 
 use super::descend::{outcome_json, outcome_table, write_trace};
 use super::figure_files::write_figures;
+use super::output::say_notes;
 use super::rig_arguments::{RigArguments, option};
 use super::{Ending, done};
 use crate::descent::driven::Drive;
@@ -28,11 +29,10 @@ pub(super) fn rig(arguments: &RigArguments) -> Result<Ending> {
         return Err(Error::argument("--proof-load: a proof load is positive"));
     }
     let levels = levels(arguments)?;
+    if arguments.compare || arguments.plan.is_some() {
+        say_notes(&study);
+    }
     if let Some(runs) = arguments.plan {
-        if let Some((drive, _)) = levels.iter().flatten().next() {
-            let name = drive.name();
-            return Err(Error::argument(format!("--{name}: --plan chooses its levels itself")));
-        }
         return plan(arguments, &study, usize::from(runs), proof_load_n);
     }
     if arguments.compare {
@@ -77,7 +77,7 @@ fn single(
             (title, run)
         }
         (None, given) => match given.as_slice() {
-            [(drive, level)] => {
+            [(drive, level), ..] => {
                 let quantity = match drive {
                     Drive::Force => Quantity::Force,
                     Drive::Speed => Quantity::Speed,
@@ -87,17 +87,7 @@ fn single(
                 let run = rig::held(&study.design, *drive, *level)?;
                 (format!("constant {} of {held}", drive.name()), run)
             }
-            [] => {
-                return Err(Error::argument(
-                    "what pulls? give one of --force \"6000 lbf\", --speed \"2.5 ft/s\", --power \"20 kW\", \
-                     --recorded FILE.csv, or --compare, or --plan",
-                ));
-            }
-            _ => {
-                return Err(Error::argument(
-                    "a truck holds one of --force, --speed and --power; --compare takes several",
-                ));
-            }
+            [] => return Err(Error::argument("nothing pulls")),
         },
     };
     if let Some(path) = &arguments.trace {
@@ -123,7 +113,7 @@ fn single(
     // A pull is held against the fluid's limit; the others are the flight's.
     let mut rigged = study.clone();
     rigged.limits = limits;
-    let mut text = format!("{}: horizontal rig, {title}\n\n", study.title);
+    let mut text = format!("{}: horizontal rig, {title}, quasi-steady model\n\n", study.title);
     text += &outcome_table(&rigged, &Outcome { deployed: true, ..run.outcome });
     if !run.outcome.deployed {
         let out = run.samples.last().map_or(0.0, |sample| sample.line_m);

@@ -5,7 +5,8 @@ use crate::descent::driven::Drive;
 use crate::error::{Diagnostic, Error, Result};
 use crate::findings::rig::Instruments;
 use crate::units::{self, Quantity};
-use clap::{Args, ValueEnum};
+use clap::error::ErrorKind;
+use clap::{Args, Command, ValueEnum};
 use std::path::PathBuf;
 
 /// What of a record drives the prediction.
@@ -67,7 +68,8 @@ pub(super) struct RigArguments {
     pub compare: bool,
     /// Find the best combinations of up to this many runs (1 to 4)
     #[arg(long, value_name = "RUNS", num_args = 0..=1, default_missing_value = "4",
-          value_parser = clap::value_parser!(u8).range(1..=4))]
+          value_parser = clap::value_parser!(u8).range(1..=4),
+          conflicts_with_all = ["force", "speed", "power"])]
     pub plan: Option<u8>,
     /// Load that no planned or compared run may exceed
     #[arg(long, value_name = "FORCE", default_value = "9000 lbf")]
@@ -86,6 +88,33 @@ pub(super) struct RigArguments {
     /// Print the result as one JSON object in SI, and nothing else, on standard output
     #[arg(long)]
     pub json: bool,
+}
+
+impl RigArguments {
+    /// Refuses what clap cannot tell by itself: no pull at all, and several where only one can be held.
+    ///
+    /// # Errors
+    /// A usage error.
+    pub fn consistent(&self) -> std::result::Result<(), clap::Error> {
+        let rig = || RigArguments::augment_args(Command::new("reeldown rig"));
+        let usage = |kind, text: &str| Err(rig().error(kind, text));
+        let held = [&self.force, &self.speed, &self.power].into_iter().flatten().count();
+        if held > 1 && !self.compare {
+            let text = "a truck holds one of --force, --speed and --power; --compare takes several";
+            return usage(ErrorKind::ArgumentConflict, text);
+        }
+        if held == 0 && self.recorded.is_none() && !self.compare && self.plan.is_none() {
+            let text = "what pulls? give one of --force \"6000 lbf\", --speed \"2.5 ft/s\", --power \"20 kW\", \
+                        --recorded FILE.csv, or --compare, or --plan";
+            return usage(ErrorKind::MissingRequiredArgument, text);
+        }
+        let thermometers = &self.instruments.thermometers;
+        if thermometers.contains(&Thermometer::None) && thermometers.len() > 1 {
+            let text = "--thermometers: none goes with no other node";
+            return usage(ErrorKind::ArgumentConflict, text);
+        }
+        Ok(())
+    }
 }
 
 /// What the instruments read, and how well, for --compare and --plan.
@@ -132,9 +161,6 @@ impl InstrumentArguments {
     pub fn instruments(&self) -> Result<Instruments> {
         let difference = Quantity::TemperatureDifference;
         let has = |node| self.thermometers.contains(&node);
-        if has(Thermometer::None) && self.thermometers.len() > 1 {
-            return Err(Error::argument("--thermometers: none goes with no other node"));
-        }
         let found = Instruments {
             every_s: option("--every", &self.every, Quantity::Time)?,
             force_noise_n: option("--force-error", &self.force_error, Quantity::Force)?,

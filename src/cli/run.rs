@@ -2,7 +2,7 @@
 
 use super::arguments::RunArguments;
 use super::figure_files::write_figures;
-use super::output::{say, say_error, stdout_style};
+use super::output::{say, say_error, say_notes, stdout_style};
 use super::sensitivity_table::{SENSITIVITY, write_sensitivity};
 use super::trade_tables::{TRADE, write_trade};
 use super::watch::{Watch, stop_on_interrupt};
@@ -49,6 +49,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Ending> {
     for name in [OUTCOMES, FINDINGS, REPORT, REPORT_HTML, SENSITIVITY, TRADE, PROVENANCE] {
         refuse_obstacle(&directory.join(name))?;
     }
+    say_notes(&study);
     campaign::with_threads(arguments.threads.asked(), || {
         Run { arguments, study: &study, directory: &directory, parentage: parentage::of(&study) }
             .carry_out()
@@ -141,6 +142,9 @@ impl Run<'_> {
         let sampler = campaign::sampler(self.study)?;
         let mut looks = Looks::new(self.study)?;
         let before = if self.arguments.resume { self.earlier(&path)? } else { None };
+        if let Some(reader) = before.as_ref().filter(|reader| reader.rows() > most) {
+            return Err(too_many(&path, reader.rows(), most));
+        }
         let mut rows = Rows {
             record: Record::new(self.study, sampler.replicates())?,
             writer: OutcomesWriter::create(&path, self.study, &self.parentage)?,
@@ -149,16 +153,15 @@ impl Run<'_> {
         if let Some(reader) = &before {
             while looks.taken() < reader.rows() && !looks.over() {
                 let start = looks.taken();
-                let count = (reader.rows().min(most) - start).min(ROW_GROUP) as usize;
+                let count = (reader.rows() - start).min(ROW_GROUP) as usize;
                 let table = reader.read(self.study, start, count)?;
                 self.verify(&path, &table)?;
-                let taken = looks.take(&table)?;
-                // A longer run, or one with another rule, has more rows than this study takes.
-                rows.push(if taken < count {
-                    reader.read(self.study, start, taken)?
-                } else {
-                    table
-                })?;
+                looks.take(&table)?;
+                rows.push(table)?;
+            }
+            // A run with another rule has more rows than this study takes: none of them is thrown away.
+            if looks.taken() < reader.rows() {
+                return Err(too_many(&path, reader.rows(), looks.taken()));
             }
         }
         let read = looks.taken();
@@ -287,6 +290,16 @@ impl Run<'_> {
             VerdictWord::Undecided => Ending::Undecided,
         })
     }
+}
+
+/// A table that has more samples than the run that is to continue it.
+fn too_many(path: &Path, rows: u64, wanted: u64) -> Error {
+    let reason = format!("it has {rows} samples, and this run ends after {wanted}");
+    let help = format!(
+        "give --samples {rows} or more (with sampling.until: the rule that it was made with), name another \
+         directory with --out, or run without --resume to replace it"
+    );
+    Error::file(path, "resume", reason, help)
 }
 
 /// Where the samples of a run go, row group by row group.

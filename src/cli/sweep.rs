@@ -2,7 +2,7 @@
 
 use super::arguments::SweepArguments;
 use super::figure_files::write_figures;
-use super::output::{say, say_error};
+use super::output::{say, say_error, say_notes};
 use super::run::quoted;
 use super::watch::{Watch, stop_on_interrupt};
 use super::{Ending, done, parentage};
@@ -40,6 +40,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Ending> {
     for name in [TABLE, FINDINGS, REPORT] {
         refuse_obstacle(&directory.join(name))?;
     }
+    say_notes(&study);
     let progress = Arc::new(Progress::default());
     stop_on_interrupt(&progress)?;
     let finding = campaign::with_threads(arguments.threads.asked(), || {

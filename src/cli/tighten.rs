@@ -1,7 +1,7 @@
 //! `reeldown tighten`: which tolerances to buy.
 
 use super::arguments::TightenArguments;
-use super::output::{say, say_error};
+use super::output::{say, say_error, say_notes};
 use super::run::quoted;
 use super::watch::{Watch, stop_on_interrupt};
 use super::{Ending, done};
@@ -22,6 +22,7 @@ pub(super) fn tighten(arguments: &TightenArguments) -> Result<Ending> {
     let moves = moves(&arguments.moves)?.map(|statement| ("--move", statement));
     let study = arguments.study.load(&target.chain(moves).collect::<Vec<_>>())?;
     study.design.validate()?;
+    say_notes(&study);
     let progress = Arc::new(Progress::default());
     stop_on_interrupt(&progress)?;
     let found = campaign::with_threads(arguments.threads.asked(), || {

@@ -192,6 +192,8 @@ pub fn compare(before: &FinishedRun, after: &FinishedRun) -> Result<CompareFindi
                 notes.push(format!("only {} has the limit `{name}`: it is not compared", run.name));
             }
         }
+        let own = study.notes.iter().filter(|note| !other.notes.contains(note));
+        notes.extend(own.map(|note| format!("in {}, {note}", run.name)));
     }
     Ok(CompareFinding {
         format: 1,

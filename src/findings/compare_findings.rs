@@ -43,7 +43,8 @@ type Index = (f64, Option<(f64, f64)>);
 /// The total indices of "any breach", factors that belong to a group left out.
 fn indices(run: &FinishedRun) -> Vec<(String, Index)> {
     let outputs = run.findings["drivers"]["outputs"].as_array();
-    let any = outputs.into_iter().flatten().find(|output| output["name"] == "breach.any");
+    let ranks = |output: &&Value| output["name"] == "breach.any" && output["too_few"].is_null();
+    let any = outputs.into_iter().flatten().find(ranks);
     let factors = any.and_then(|output| output["factors"].as_array());
     let index = |factor: &Value| {
         let total = &factor["total"];

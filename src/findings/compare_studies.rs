@@ -1,8 +1,7 @@
 //! What differs between two studies, in the words in which they are written.
 
 use super::compare::ChangeFinding;
-use crate::study::{DrawnTogether, StoppingPlan, Study};
-use crate::uncertainty::Measure;
+use crate::study::{DrawnTogether, ResolvedCorrelation, StoppingPlan, Study};
 use crate::units::number;
 
 /// Every difference that a result can depend on.
@@ -42,17 +41,10 @@ pub(super) fn changes(before: &Study, after: &Study) -> Vec<ChangeFinding> {
         add("law", path, law(&first), law(&second));
     }
     let correlations = |study: &Study| {
-        let path = |j: usize| study.inputs[j].target.path();
-        let line = |c: &crate::study::Correlation| {
-            let kind = match c.measure {
-                Measure::Normal(_) => "normal",
-                Measure::Spearman(_) => "spearman",
-                Measure::Kendall(_) => "kendall",
-            };
-            let (a, b) = (path(c.between.0), path(c.between.1));
-            format!("{a} and {b}: {kind} {}", c.measure.value())
+        let line = |c: &ResolvedCorrelation| {
+            format!("{}: {} {}", c.inputs(), c.measure.name(), c.measure.value())
         };
-        let lines: Vec<String> = study.correlations.iter().map(line).collect();
+        let lines: Vec<String> = study.resolved_correlations().iter().map(line).collect();
         (!lines.is_empty()).then(|| lines.join("; "))
     };
     add("correlation", "correlations", correlations(before), correlations(after));

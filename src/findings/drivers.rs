@@ -5,6 +5,7 @@ use crate::campaign::{PickFreezeOutcomes, in_parallel};
 use crate::descent::OutcomeQuantity;
 use crate::error::Result;
 use crate::sensitivity::bootstrap::Resampling;
+use crate::sensitivity::rare_events::FEWEST;
 use crate::sensitivity::sobol_indices::{FactorIndices, PairIndices, sobol_indices};
 use crate::study::Study;
 use serde::Serialize;
@@ -37,6 +38,8 @@ pub struct DriverOutput {
     pub mean: Option<f64>,
     /// Variance of the output.
     pub variance: Option<f64>,
+    /// Why the indices of a breach do not rank the factors: too few breaches, or too few descents without one.
+    pub too_few: Option<String>,
     /// One entry a factor.
     pub factors: Vec<FactorFinding>,
     /// One entry a pair that was asked for.
@@ -109,11 +112,14 @@ pub(super) fn drivers(
                 indices,
             }
         });
+        let breach = !matches!(output, Output::Outcome(_));
         Ok(DriverOutput {
             pairs: pairs.collect(),
+            // Blocks A and B: the others repeat their values.
+            too_few: too_few(blocks.iter().take(2).copied().flatten()).filter(|_| breach),
             name: output.name(study),
             title: output.title(study),
-            breach: !matches!(output, Output::Outcome(_)),
+            breach,
             mean: indices.mean,
             variance: indices.variance,
             factors: factors
@@ -132,6 +138,22 @@ pub(super) fn drivers(
         descents: design.plan.points(),
         faults: design.faults,
         outputs: outputs.into_iter().collect::<Result<_>>()?,
+    })
+}
+
+/// Why these indicators of a breach (NaN: not known) are too few of one kind to tell what drives it.
+pub(super) fn too_few<'v>(indicators: impl Iterator<Item = &'v f64>) -> Option<String> {
+    let (mut breaches, mut clean) = (0, 0);
+    for &value in indicators {
+        breaches += u64::from(value == 1.0);
+        clean += u64::from(value == 0.0);
+    }
+    (breaches.min(clean) < FEWEST).then(|| {
+        format!(
+            "{breaches} of {} descents breach: at least {FEWEST} that do and {FEWEST} that do not are needed \
+             to say what drives a breach",
+            breaches + clean
+        )
     })
 }
 

@@ -9,6 +9,7 @@ use crate::error::Result;
 use crate::numerics::interval::Estimate;
 use crate::reliability::demonstration::{Requirement, Verdict};
 use crate::reliability::jackknife::delete_a_group;
+use crate::reliability::nested::untold;
 use crate::reliability::probability::Proportion;
 use crate::study::Study;
 use serde::Serialize;
@@ -67,6 +68,8 @@ pub struct StageFinding {
     /// Conditional probability that a share of sets stays below: (share, probability); drawn together
     /// about the mean by as much as the continuations' own scatter spreads them.
     pub quantiles: Vec<(f64, f64)>,
+    /// Why there are no quantiles: too few sets saw a breach, or a descent without one.
+    pub untold: Option<String>,
 }
 
 /// Whether to go, given a measured value.
@@ -240,6 +243,10 @@ fn stage(stage: &Stage) -> StageFinding {
         let seen = shares.get(at.min(shares.len().saturating_sub(1))).copied();
         (mean + shrink * (seen.unwrap_or(f64::NAN) - mean)).clamp(0.0, 1.0)
     };
+    let (happened, failed_to) =
+        (shares.iter().filter(|p| **p > 0.0).count(), shares.iter().filter(|p| **p < 1.0).count());
+    let untold = untold(happened, failed_to, shares.len());
+    let told = SHARES.iter().filter(|_| untold.is_none());
     StageFinding {
         known: stage.known.name(),
         inputs: stage.inputs,
@@ -247,7 +254,8 @@ fn stage(stage: &Stage) -> StageFinding {
         continuations: INNER,
         standard_deviation: jackknife(sets, &deviation_of),
         settled: jackknife(sets, &settled_of),
-        quantiles: SHARES.iter().map(|&share| (share, quantile(share))).collect(),
+        quantiles: told.map(|&share| (share, quantile(share))).collect(),
+        untold,
     }
 }
 

@@ -52,7 +52,7 @@ pub use figures::{
     Checkpoint, ConstantTemperature, Convergence, Distribution, Exceedance, Fan, FanBand,
     FigureData, Interaction, InteractionInput, PaperRuns, paper_runs,
 };
-pub use inputs::InputFinding;
+pub use inputs::{CorrelationFinding, InputFinding};
 pub use known::KnownFinding;
 pub use margins::{MarginFinding, MarginQuantile};
 pub use measures::MeasuresFinding;
@@ -105,6 +105,8 @@ pub struct Findings {
     pub exceptions: ExceptionFinding,
     /// What is uncertain.
     pub inputs: Vec<InputFinding>,
+    /// How what is uncertain depends on each other, beside what is drawn together from rows of a file.
+    pub correlations: Vec<CorrelationFinding>,
     /// The numbers behind the figures.
     pub figures: FigureData,
     /// What the integrator's own error could have done.
@@ -269,10 +271,11 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
         epistemic,
         exceptions: exceptions(record),
         inputs: inputs::inputs(study),
+        correlations: inputs::correlations(study),
         numerical: numerical::numerical(study, record, &evidence.verification),
         method: MethodFinding {
             model: study.model.name(),
-            design: sampler.describe(),
+            design: sampler.describe() + &inputs::dependence(study),
             samples: record.counts().samples(),
             replicates: sampler.replicates(),
             tolerance: study.numerics.tolerance,

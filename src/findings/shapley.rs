@@ -1,6 +1,7 @@
 //! Every factor's fair share of the variance, also where inputs are correlated.
 
 use super::CONFIDENCE;
+use super::drivers::too_few;
 use crate::campaign::common_numbers::Event;
 use crate::campaign::in_parallel;
 use crate::campaign::shapley::ShapleyOutcomes;
@@ -30,6 +31,8 @@ pub struct ShapleyOutput {
     pub name: String,
     /// Variance of the output.
     pub variance: Option<f64>,
+    /// Why the effects on a breach are not to be read: too few breaches, or too few descents without one.
+    pub too_few: Option<String>,
     /// Walks left out because an outcome along them is not known.
     pub left_out: usize,
     /// One entry a factor: its name and its share; the shares add up to one.
@@ -67,6 +70,7 @@ pub(super) fn shapley(
         Ok(ShapleyOutput {
             name,
             variance: found.variance,
+            too_few: too_few(values.iter()).filter(|_| output.is_none()),
             left_out: found.left_out,
             effects: names.zip(found.effects).collect(),
         })

@@ -9,7 +9,7 @@
 mod estimates;
 mod shares;
 
-pub use estimates::{Band, band, central};
+pub use estimates::{Band, band, central, untold};
 pub use shares::{ShareSample, Shares, share_sample, shares};
 
 use super::draws::open_uniform;

@@ -92,7 +92,8 @@ pub(super) fn calibrated(finding: &CalibratedFinding) -> Calibrated {
 }
 
 fn band_text((low, high): (f64, f64)) -> String {
-    format!("{} … {}", probability(low), probability(high))
+    let (low, high) = (probability(low), probability(high));
+    if low == high { low } else { format!("{low} … {high}") }
 }
 
 fn event(event: &CalibratedEvent) -> EventRow {

@@ -2,6 +2,7 @@
 
 use super::figures::Figure;
 use super::figures_of_speech::probability;
+use super::markdown;
 use super::tables::table;
 use crate::findings::calibration::{
     CalibrationFinding, LawFinding, ParameterFinding, RiskFinding, about_one,
@@ -130,14 +131,14 @@ fn markdown_table<const N: usize>(
 ) -> String {
     let mut text = format!("| {} |\n|{}\n", header.join(" | "), " --- |".repeat(N));
     for row in rows {
-        text += &format!("| {} |\n", row.join(" | "));
+        text += &markdown::row(&row);
     }
     text
 }
 
 /// The calibration as Markdown; its figures are files in the directory `figures` beside it.
 pub fn calibration_markdown(finding: &CalibrationFinding, figures: &[Figure]) -> String {
-    let mut text = format!("# {}: calibration\n\n", finding.title);
+    let mut text = format!("# {}: calibration\n\n", markdown::inline(&finding.title));
     for line in &finding.statements {
         text += &format!("- {line}\n");
     }

@@ -1,6 +1,7 @@
 //! What changed between two runs, as text: for a terminal, and as Markdown.
 
 use super::figures_of_speech::{bare, count, probability, probability_interval, value};
+use super::markdown;
 use super::tables::table;
 use crate::findings::compare::{ChangeFinding, CompareFinding, DriverChange, EventChange};
 use crate::numerics::interval::Estimate;
@@ -54,7 +55,7 @@ pub fn compare_markdown(finding: &CompareFinding) -> String {
             text += &format!("| {} |\n", section.header.join(" | "));
             text += &format!("| --- |{}\n", " ---: |".repeat(section.header.len() - 1));
             for row in &section.rows {
-                text += &format!("| {} |\n", row.join(" | "));
+                text += &markdown::row(row);
             }
         }
         for line in &section.below {
@@ -67,8 +68,9 @@ pub fn compare_markdown(finding: &CompareFinding) -> String {
         let verdict = run.verdict.replace('_', " ");
         let samples = count(run.samples);
         let digest = run.study_digest.get(..16).unwrap_or(&run.study_digest);
+        let name = format!("`{}`", run.name);
         text +=
-            &format!("| `{}` | {} | {verdict} | {samples} | `{digest}…` |\n", run.name, run.title);
+            &markdown::row(&[name, run.title.clone(), verdict, samples, format!("`{digest}…`")]);
     }
     text
 }

@@ -32,8 +32,12 @@ pub(super) struct DriverRow {
     pub total: String,
 }
 
-/// The factors of an output without the members of listed groups, the strongest first.
+/// The factors of an output without the members of listed groups, the strongest first; none where too few
+/// breaches rank them.
 pub(super) fn ranked(output: &DriverOutput) -> Vec<&FactorFinding> {
+    if output.too_few.is_some() {
+        return Vec::new();
+    }
     let mut factors: Vec<&FactorFinding> = output.factors.iter().filter(|f| !f.grouped).collect();
     let strength = |f: &FactorFinding| f.indices.total.value.unwrap_or(f64::NEG_INFINITY);
     factors.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
@@ -91,7 +95,9 @@ fn driver_table(output: &DriverOutput) -> DriverTable {
         (_, Some(why)) => format!("No indices: {why}."),
         _ => "No indices.".to_owned(),
     };
-    if strongest.is_finite() {
+    if let Some(why) = &output.too_few {
+        sentence = format!("No ranking: {why}.");
+    } else if strongest.is_finite() {
         sentence +=
             &format!(" No single member of a group has a total index above {strongest:.3}.");
     }
@@ -132,7 +138,7 @@ fn driver_table(output: &DriverOutput) -> DriverTable {
                 total: index(&factor.indices.total),
             })
             .collect(),
-        pairs: pairs.collect(),
+        pairs: pairs.filter(|_| output.too_few.is_none()).collect(),
         explanations,
     }
 }

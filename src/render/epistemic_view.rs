@@ -1,6 +1,6 @@
 //! What varies and what is not known, in a reader's words.
 
-use super::figures_of_speech::{count, probability, probability_interval};
+use super::figures_of_speech::{count, lies_between, probability, probability_interval};
 use super::trade_view::{name_of, percent};
 use crate::findings::{CONFIDENCE, EpistemicEvent, EpistemicFinding};
 use crate::numerics::interval::Estimate;
@@ -46,17 +46,20 @@ pub(super) fn epistemic(finding: &EpistemicFinding) -> Epistemic {
         about: about(finding, any),
         rows: finding.events.iter().map(row).collect(),
         shares: any.map_or(Vec::new(), |event| event.shares.iter().map(share).collect()),
-        no_shares: any.and_then(|event| event.no_shares.clone()),
+        no_shares: any.and_then(no_shares),
     }
+}
+
+/// Why there are no shares, or why none of them has a value.
+fn no_shares(event: &EpistemicEvent) -> Option<String> {
+    let without_value = event.shares.iter().all(|share| share.total.value.is_none());
+    let why = || event.shares.first()?.total.interval.why_none().map(str::to_owned);
+    event.no_shares.clone().or_else(|| why().filter(|_| without_value))
 }
 
 /// A quantile of P by its share of belief.
 fn quantile(event: &EpistemicEvent, share: f64) -> Option<&Estimate> {
     event.quantiles.iter().find(|(at, _)| *at == share).map(|(_, estimate)| estimate)
-}
-
-fn shown(estimate: Option<&Estimate>) -> String {
-    estimate.and_then(|e| e.value).map_or("–".to_owned(), probability)
 }
 
 /// "3.1 % (2.2 % … 4.3 %)".
@@ -78,12 +81,10 @@ fn headlines(any: &EpistemicEvent) -> Vec<String> {
              cannot be told: {why}."
         )];
     }
+    let at = |share: f64| quantile(any, share).and_then(|e| e.value).unwrap_or(f64::NAN);
     let mut lines = vec![format!(
-        "P(any breach) is {} on average; given the true constants of this brake it lies between {} and {} (90 % \
-         of our belief).",
-        mean,
-        shown(quantile(any, 0.05)),
-        shown(quantile(any, 0.95)),
+        "P(any breach) is {mean} on average; given the true constants of this brake it {} (90 % of our belief).",
+        lies_between(at(0.05), at(0.95)),
     )];
     if let Some((allowed, belief)) = &any.requirement_met {
         let is = match (belief.value, belief.interval.why_none()) {

@@ -18,6 +18,12 @@ pub(super) fn probability(share: f64) -> String {
     format!("{} %", number(100.0 * share, DIGITS))
 }
 
+/// Where a probability lies: "lies between 1 % and 2 %", or "is 1 %" where both ends print alike.
+pub(super) fn lies_between(low: f64, high: f64) -> String {
+    let (low, high) = (probability(low), probability(high));
+    if low == high { format!("is {low}") } else { format!("lies between {low} and {high}") }
+}
+
 /// Both ends of an interval of a probability, or that there is none.
 pub(super) fn probability_interval(interval: &Earned) -> String {
     match interval.interval() {

@@ -1,6 +1,6 @@
 //! What becomes known when, and whether to go, in a reader's words.
 
-use super::figures_of_speech::{bare, count, probability, probability_interval};
+use super::figures_of_speech::{bare, count, lies_between, probability, probability_interval};
 use super::trade_view::{TradeRow, percent, quantity_of};
 use crate::findings::known::{GoAnswer, GoChart, GoMap, KnownFinding};
 use crate::numerics::interval::Estimate;
@@ -59,20 +59,27 @@ pub(super) fn known(finding: &KnownFinding) -> Known {
             };
             let at = |share: f64| {
                 let found = stage.quantiles.iter().find(|(s, _)| *s == share);
-                found.map_or("–".to_owned(), |(_, p)| probability(*p))
+                found.map_or(f64::NAN, |(_, p)| *p)
+            };
+            let told = match &stage.untold {
+                Some(why) => {
+                    format!("how much is settled and what P(any breach) then is cannot be told: {why}")
+                }
+                None => format!(
+                    "a share {settled} of the variance of \"breach or not\" is settled; P(any breach) then {} \
+                     in nine cases of ten, about a median of {}",
+                    lies_between(at(0.05), at(0.95)),
+                    probability(at(0.5))
+                ),
             };
             let words = match stage.known {
                 "at build" => "Once the brake is built and measured",
                 _ => "Once that and the day's measurements are known",
             };
             format!(
-                "{words} ({} inputs), a share {settled} of the variance of \"breach or not\" is settled; P(any \
-                 breach) then lies between {} and {} in nine cases of ten, about a median of {} ({} sets of values \
-                 with {} continuations each, whose own scatter is taken out).",
+                "{words} ({} inputs), {told} ({} sets of values with {} continuations each, whose own scatter is \
+                 taken out).",
                 stage.inputs,
-                at(0.05),
-                at(0.95),
-                at(0.5),
                 count(stage.sets as u64),
                 stage.continuations
             )

@@ -69,9 +69,10 @@ pub fn paper_page(finding: &PaperFinding, design: &str, command: &str) -> PaperP
         text += &section(figure, statements.iter().filter(|s| s.place == place));
     }
     text += &format!(
-        "\n## The horizontal rig\n\nThree ways to pull the line with a truck. Each is held at the flight's mean \
+        "\n## The horizontal rig\n\nThree ways to pull the line with a truck, by the {} model. Each is held at the flight's mean \
          or, where the load or the fluid's temperature would exceed what is allowed, at the greatest level that \
          keeps the proof load of {} (assumed; the paper gives none) and the fluid's limit.\n\n",
+        finding.modes.model,
         value(finding.modes.proof_load_n, Quantity::Force)
     );
     text += &told(statements.iter().filter(|s| s.place.starts_with("rig")));

@@ -85,7 +85,11 @@ pub fn rig_comparison_terminal(comparison: &Comparison) -> String {
         ),
         row("duration", &|m| value(m.duration_s, Quantity::Time), none()),
         row("peak load", &|m| value(m.peak_force_n, Quantity::Force), none()),
-        row("  after", &|m| value(m.peak_force_time_s, Quantity::Time), none()),
+        row(
+            "  after",
+            &|m| m.peak_force_time_s.map_or("constant".to_owned(), |s| value(s, Quantity::Time)),
+            none(),
+        ),
         row("  of the proof load", &|m| share(m.load_over_proof), none()),
         row("energy", &|m| energy(m.energy_j), energy(comparison.flight_energy_j)),
         row("  of the flight's", &|m| share(m.energy_over_flight), none()),
@@ -101,8 +105,9 @@ pub fn rig_comparison_terminal(comparison: &Comparison) -> String {
         ),
     ];
     let mut text = format!(
-        "The rig's modes as test options, proof load {}\n\n{}\n\n",
+        "The rig's modes as test options, proof load {}\nFlight and runs by the {} model, without accelerations.\n\n{}\n\n",
         value(comparison.proof_load_n, Quantity::Force),
+        comparison.model,
         table(&header, 1..header.len(), rows, None)
     );
     text += &format!("flight, on the mean over its time: {}\n", means.join(", "));
@@ -223,7 +228,7 @@ pub fn rig_plan_terminal(plan: &PlanFinding) -> String {
         text += &format!("left out of P: {name}, whose design point was not found\n");
     }
     text += &format!(
-        "Instruments: {}.\n\
+        "Instruments: {}.\nThe runs on the rig are by the quasi-steady model.\n\
          Linear and normal about the card's medians; the model itself is taken as right. The order is that of \
          the reliability index's standard deviation.\n",
         instruments(&plan.instruments)

@@ -2,6 +2,7 @@
 
 use super::figures::Figure;
 use super::figures_of_speech::{count, maybe, probability, probability_interval, value};
+use super::markdown;
 use super::tables::table;
 use crate::findings::known::GoAnswer;
 use crate::findings::sweep::{CellFinding, PathFinding, SweepFinding};
@@ -36,7 +37,7 @@ pub fn sweep_terminal(sweep: &SweepFinding) -> String {
 
 /// A sweep as Markdown; its figures are files in the directory `figures` beside it.
 pub fn sweep_markdown(sweep: &SweepFinding, figures: &[Figure]) -> String {
-    let mut text = format!("# {}: {}\n\n", sweep.title, heading(sweep));
+    let mut text = format!("# {}: {}\n\n", markdown::inline(&sweep.title), heading(sweep));
     for line in statements(sweep) {
         text += &format!("{line}\n\n");
     }
@@ -57,7 +58,7 @@ pub fn sweep_markdown(sweep: &SweepFinding, figures: &[Figure]) -> String {
     let (header, rows) = rows(sweep);
     text += &format!("| {} |\n|{}\n", header.join(" | "), " ---: |".repeat(header.len()));
     for row in rows {
-        text += &format!("| {} |\n", row.join(" | "));
+        text += &markdown::row(&row);
     }
     text +=
         "\nThe table of every cell is `sweep.parquet`, and everything here is in `sweep.json`.\n";

@@ -63,7 +63,14 @@ pub fn terminal(findings: &Findings, style: Style) -> String {
     } else {
         text += &format!("\n{}\n", rare(&view.rare, &interval_header));
     }
-    if let Some(output) = view.drivers.outputs.first().filter(|output| !output.rows.is_empty()) {
+    if let Some(why) = &view.drivers.none {
+        text += &format!("\n{}\n", wrapped(&format!("No sensitivity indices: {why}.")));
+    } else if let Some(output) = view.drivers.outputs.first().filter(|o| o.rows.is_empty()) {
+        text += &format!(
+            "\n{}\n",
+            wrapped(&format!("Drivers of {}: {}", output.title, output.sentence))
+        );
+    } else if let Some(output) = view.drivers.outputs.first() {
         let header = [&format!("drivers of {}", output.title), "alone", "with interactions"];
         let rows = output
             .rows
@@ -71,8 +78,6 @@ pub fn terminal(findings: &Findings, style: Style) -> String {
             .take(SHOWN_DRIVERS)
             .map(|row| [row.name.replace('`', ""), row.first.clone(), row.total.clone()]);
         text += &format!("\n{}\n", table(&header, 1..3, rows, None));
-    } else if let Some(why) = &view.drivers.none {
-        text += &format!("\n{}\n", wrapped(&format!("No sensitivity indices: {why}.")));
     }
     if !view.trade.best.is_empty() {
         text.push('\n');
@@ -107,19 +112,26 @@ pub fn terminal(findings: &Findings, style: Style) -> String {
 
 /// The sharpest estimate of each rare breach, and every agreement check that failed.
 fn rare(events: &[Rare], interval_header: &str) -> String {
-    let rows = events.iter().map(|event| {
-        let shown = event.sharpest.and_then(|k| event.rows.get(k));
-        let cell = |read: fn(&RareRow) -> String| shown.map_or("none".to_owned(), read);
-        [
-            event.title.clone(),
-            cell(|row| row.method.to_owned()),
-            cell(|row| row.descents.clone()),
-            cell(|row| row.probability.clone()),
-            cell(|row| row.interval.clone()),
-        ]
-    });
+    let sharpest = |event: &Rare| event.sharpest.and_then(|k| event.rows.get(k)).cloned();
+    let rows: Vec<[String; 5]> = events
+        .iter()
+        .filter_map(|event| {
+            let RareRow { method, descents, probability, interval, .. } = sharpest(event)?;
+            Some([event.title.clone(), method.to_owned(), descents, probability, interval])
+        })
+        .collect();
     let header = ["rare breach", "sharpest method", "descents", "probability", interval_header];
-    let mut text = table(&header, 2..5, rows, None);
+    let mut parts = Vec::new();
+    if !rows.is_empty() {
+        parts.push(table(&header, 2..5, rows, None));
+    }
+    for event in events.iter().filter(|event| sharpest(event).is_none()) {
+        parts.push(wrapped(&format!(
+            "{}: no estimate sharper than the samples' own. {}",
+            event.title, event.without_interval
+        )));
+    }
+    let mut text = parts.join("\n");
     for event in events.iter().filter(|event| event.agreement.starts_with("AGREEMENT")) {
         text += &format!("\n{}: {}", event.title, event.agreement);
     }

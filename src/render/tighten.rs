@@ -1,6 +1,7 @@
 //! A plan of tightenings as text: for a terminal, and as Markdown.
 
 use super::figures_of_speech::{count, probability, probability_interval, value};
+use super::markdown;
 use super::tables::table;
 use crate::findings::tighten::{DesignChange, PlanFinding, PurchaseFinding, TightenFinding};
 use crate::numerics::interval::Estimate;
@@ -29,16 +30,16 @@ pub fn tighten_terminal(finding: &TightenFinding) -> String {
 
 /// The plan as Markdown.
 pub fn tighten_markdown(finding: &TightenFinding) -> String {
-    let mut text =
-        format!("# {}: tightening to {}\n\n", finding.title, probability(finding.target));
+    let title = markdown::inline(&finding.title);
+    let mut text = format!("# {title}: tightening to {}\n\n", probability(finding.target));
     text += &format!("{}\n\n## The plan\n\n", finding.statement);
     text += "| what | now | then | cost |\n| --- | ---: | ---: | ---: |\n";
     for row in plan_rows(&finding.plan) {
-        text += &format!("| {} |\n", row.join(" | "));
+        text += &markdown::row(&row);
     }
     text += "\n## The way there\n\n| step | cost | P(any breach) |\n| --- | ---: | ---: |\n";
     for row in step_rows(finding) {
-        text += &format!("| {} |\n", row.join(" | "));
+        text += &markdown::row(&row);
     }
     text += "\n";
     for line in lines(finding) {

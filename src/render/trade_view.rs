@@ -52,6 +52,8 @@ pub(super) struct DerivativeRow {
 pub(super) struct Shares {
     pub none: Option<String>,
     pub about: String,
+    /// Why those of a breach are not shown.
+    pub too_few: Option<String>,
     pub rows: Vec<ShareRow>,
 }
 
@@ -67,14 +69,16 @@ pub(super) fn shares(finding: &ShapleyFinding) -> Shares {
     let mut effects: Vec<&(String, Estimate)> = finding
         .outputs
         .iter()
-        .filter(|output| output.name == "breach.any")
+        .filter(|output| output.name == "breach.any" && output.too_few.is_none())
         .flat_map(|output| &output.effects)
         .collect();
     let size = |effect: &(String, Estimate)| effect.1.value.unwrap_or(f64::NEG_INFINITY);
     effects.sort_by(|a, b| size(b).total_cmp(&size(a)));
     let shown = effects.iter().filter(|effect| effect.1.value.is_some());
+    let of_breach = finding.outputs.iter().find(|output| output.name == "breach.any");
     Shares {
         none: finding.none.clone(),
+        too_few: of_breach.and_then(|output| output.too_few.clone()),
         about: format!(
             "Shapley effects of a breach of any limit: fair shares of its variance that add up to one, also where \
              inputs are correlated, by {} walks ({} descents). One below zero is zero within its error.",

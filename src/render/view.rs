@@ -13,7 +13,7 @@ use crate::descent::OutcomeQuantity;
 use crate::findings::{
     CONFIDENCE, Decision, EventKind, Findings, MarginFinding, RareFinding, VerdictWord,
 };
-use crate::units::Quantity;
+use crate::units::{Quantity, number};
 use serde::Serialize;
 
 /// A report, ready to be laid out.
@@ -42,6 +42,7 @@ pub(super) struct View {
     pub outcomes: Vec<OutcomeRow>,
     pub exceptions: Vec<String>,
     pub inputs: Vec<InputRow>,
+    pub correlations: Vec<CorrelationRow>,
     pub method: Method,
     pub reproduction: Reproduction,
 }
@@ -81,7 +82,7 @@ pub(super) struct Rare {
     pub story: Option<String>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub(super) struct RareRow {
     pub method: &'static str,
     pub probability: String,
@@ -121,6 +122,14 @@ pub(super) struct InputRow {
     pub inputs: usize,
     pub known: &'static str,
     pub nature: &'static str,
+    pub source: String,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct CorrelationRow {
+    pub inputs: String,
+    pub stated: String,
+    pub normal: String,
     pub source: String,
 }
 
@@ -185,6 +194,16 @@ pub(super) fn view(findings: &Findings) -> View {
                 known: input.known,
                 nature: input.nature,
                 source: input.source.clone(),
+            })
+            .collect(),
+        correlations: findings
+            .correlations
+            .iter()
+            .map(|correlation| CorrelationRow {
+                inputs: correlation.inputs.clone(),
+                stated: format!("{} {}", correlation.kind, correlation.coefficient),
+                normal: number(correlation.normal_correlation, 4),
+                source: correlation.source.clone(),
             })
             .collect(),
         method: Method {

@@ -8,7 +8,7 @@ mod block_sums;
 pub mod bootstrap;
 pub mod morris;
 pub mod pick_freeze;
-mod rare_events;
+pub(crate) mod rare_events;
 pub mod shapley;
 pub mod sobol_indices;
 

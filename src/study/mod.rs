@@ -41,7 +41,7 @@ pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, Parquet, read_column, read_sample}
 pub use measured_run::MeasuredRun;
 pub use over::{MOST_CELLS, Over, design_path, option_error};
 pub use overrides::Override;
-pub use resolved::{ResolvedParameter, UncertainLaw};
+pub use resolved::{ResolvedCorrelation, ResolvedParameter, UncertainLaw};
 pub use tighten::{DesignRange, Grade, TightenPlan, TighteningCost, TradePlan};
 pub use together::{SampleColumn, SampleFile};
 pub use until::StoppingPlan;

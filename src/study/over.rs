@@ -193,7 +193,8 @@ fn end_value(end: &Place, quantity: Quantity, other_unit: &str) -> Result<f64> {
         && number.is_finite()
     {
         if other_unit.is_empty() {
-            return Ok(number);
+            return units::bare(number, written, quantity)
+                .map_err(|error| end.error_with(error.problem, error.expected, error.help));
         }
         // The unit is at fault, if any, at the end where it is written.
         return units::parse(&format!("{written} {other_unit}"), quantity)

@@ -26,11 +26,11 @@ pub(super) fn quantity(node: &Node, quantity: Quantity) -> Result<f64> {
             return Err(node.place.error(format!("this is {}", other.described()), expected));
         }
     };
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(node.place.error("this is not a finite number", "expected a finite number"))
+    if !value.is_finite() {
+        return Err(node.place.error("this is not a finite number", "expected a finite number"));
     }
+    units::bare(value, node.place.written(), quantity)
+        .map_err(|error| node.place.error_with(error.problem, error.expected, error.help))
 }
 
 /// The stretch of a text value that lies between its quotes, if they are plain ones.

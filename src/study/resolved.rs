@@ -1,8 +1,9 @@
 //! Every resolved value of a study with where it comes from, for `reeldown check`.
 
-use super::{Known, Nature, Study};
+use super::{Correlation, Known, Nature, Study};
 use crate::physics::design::Target;
 use crate::physics::parameters::{PARAMETERS, Parameter};
+use crate::uncertainty::Measure;
 use crate::units::{self, Quantity};
 
 /// One value of the design, resolved.
@@ -45,7 +46,7 @@ pub struct UncertainLaw {
     pub nature: Nature,
     /// The factor of grouped sensitivities.
     pub group: Option<String>,
-    /// How many independent inputs follow it: the surfaces that share a statement.
+    /// How many inputs follow it: the surfaces that share a statement.
     pub inputs: usize,
 }
 
@@ -113,6 +114,61 @@ impl Study {
             source,
             uncertain,
         }
+    }
+}
+
+/// A statement of dependence, for a person.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResolvedCorrelation {
+    /// Paths of the two inputs; both `brake.gap` where one statement is about pairs of surfaces.
+    pub between: (String, String),
+    /// How many pairs of inputs it is about.
+    pub pairs: usize,
+    /// The coefficient as stated, −1 … 1, with its kind; a Gaussian copula has the dependence.
+    pub measure: Measure,
+    /// Where it comes from.
+    pub source: String,
+}
+
+impl ResolvedCorrelation {
+    /// The inputs in words.
+    pub fn inputs(&self) -> String {
+        let (a, b) = &self.between;
+        match self.pairs {
+            1 => format!("{a} and {b}"),
+            pairs => format!("{pairs} pairs of surfaces of {a}"),
+        }
+    }
+}
+
+impl Study {
+    /// The correlations of the inputs; like ones of pairs of surfaces are one.
+    pub fn resolved_correlations(&self) -> Vec<ResolvedCorrelation> {
+        let target = |j: usize| self.inputs.get(j).map(|input| input.target);
+        let is_gap = |j| target(j).is_some_and(|of| of.parameter == Parameter::BrakeGap);
+        let mut found: Vec<ResolvedCorrelation> = Vec::new();
+        for (k, one) in self.correlations.iter().enumerate() {
+            let like = |(_, other): &(usize, &Correlation)| {
+                let same = (other.measure, &other.source) == (one.measure, &one.source);
+                same && [one, other].iter().all(|c| is_gap(c.between.0) && is_gap(c.between.1))
+            };
+            let likes = || self.correlations.iter().enumerate().filter(like);
+            let pairs = likes().count().max(1);
+            if likes().next().is_some_and(|(first, _)| first < k) {
+                continue;
+            }
+            let path = |j| match target(j) {
+                Some(of) if pairs > 1 => of.parameter.info().path.to_owned(),
+                of => of.map_or(String::new(), |of| of.path()),
+            };
+            found.push(ResolvedCorrelation {
+                between: (path(one.between.0), path(one.between.1)),
+                pairs,
+                measure: one.measure,
+                source: one.source.clone(),
+            });
+        }
+        found
     }
 }
 

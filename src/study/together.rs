@@ -112,9 +112,8 @@ fn read_one(statement: &Node, files: &mut dyn Files) -> Result<Together> {
     };
     let mut members = Vec::with_capacity(chosen.len());
     for Chosen { target, column, unit, place } in chosen {
-        let values = in_si(target, column, unit).map_err(|reason| {
-            place.error(format!("{name}: {reason}"), possible_range(target.parameter))
-        })?;
+        let values = in_si(target, column, unit)
+            .map_err(|(found, expected)| place.error(format!("{name}: {found}"), expected))?;
         members.push((target, values));
     }
     members.sort_by_key(|(target, _)| *target);
@@ -266,31 +265,35 @@ fn check_continuous(target: Target, key: &Key) -> Result<()> {
     Ok(())
 }
 
-/// The numbers of a column in SI, or why they are none.
+/// The numbers of a column in SI, or what was found instead and what was expected.
 fn in_si(
     target: Target,
     column: &SampleColumn,
     unit: Option<&str>,
-) -> std::result::Result<Vec<f64>, String> {
+) -> std::result::Result<Vec<f64>, (String, String)> {
     let info = target.parameter.info();
     let (header, values) = column;
-    let values = values.as_ref().map_err(|reason| format!("column \"{header}\": {reason}"))?;
+    let values = values.as_ref().map_err(|reason| {
+        let expected = "expected a finite number in every row of the column";
+        (format!("column \"{header}\": {reason}"), expected.to_owned())
+    })?;
     let mut converted = Vec::with_capacity(values.len());
     for (row, &value) in values.iter().enumerate() {
         let si = match unit.filter(|unit| !unit.is_empty() && *unit != "1" && *unit != "-") {
             None => value,
             Some(unit) => {
                 units::parse(&format!("{value} {unit}"), info.quantity).map_err(|error| {
-                    format!("column \"{header}\": {}, {}", error.problem, error.expected)
+                    (format!("column \"{header}\": {}", error.problem), error.expected)
                 })?
             }
         };
         if !info.admits(si) {
-            return Err(format!(
+            let found = format!(
                 "row {} of column \"{header}\" is {value}, which is impossible for {}",
                 row + 1,
                 target.path()
-            ));
+            );
+            return Err((found, possible_range(target.parameter)));
         }
         converted.push(si);
     }

@@ -7,5 +7,5 @@ pub mod spelling;
 mod table;
 
 pub use display::{DisplayUnit, System, display, engineering, format_engineering, number};
-pub use parse::{UnitError, parse};
+pub use parse::{UnitError, bare, parse};
 pub use quantity::Quantity;

@@ -1,6 +1,7 @@
 //! Reading "0.062 in" into SI.
 
 use super::Quantity;
+use super::display::{System, format_engineering};
 use super::spelling::nearest;
 use super::table::{Dimension, UNITS, Unit, dimension_name};
 use std::ops::Range;
@@ -16,6 +17,36 @@ pub struct UnitError {
     pub expected: String,
     /// What to write instead, where that can be guessed.
     pub help: Option<String>,
+}
+
+/// Kelvin below which a bare number is no temperature that was meant: colder than any air on Earth.
+const COLDEST_K: f64 = 150.0;
+
+/// Takes a number without a unit as SI, unless it cannot have been meant so: a bare 40 for a temperature would
+/// be 40 K. `written` is the number as its text stands.
+///
+/// # Errors
+/// A temperature below 150 K, with how to write it.
+pub fn bare(value: f64, written: &str, quantity: Quantity) -> Result<f64, UnitError> {
+    if quantity != Quantity::Temperature || value.is_nan() || value >= COLDEST_K {
+        return Ok(value);
+    }
+    let meant = System::UsCustomary;
+    Err(UnitError {
+        span: 0..written.len(),
+        problem: format!(
+            "{written} without a unit is {written} K, which is {}",
+            format_engineering(value, quantity, meant, 4)
+        ),
+        expected: format!(
+            "expected a temperature with its unit, such as \"{}\"",
+            quantity.example()
+        ),
+        help: Some(format!(
+            "a bare number is in SI units; write \"{written} °F\", \"{written} °C\" or, if it is meant, \
+             \"{written} K\""
+        )),
+    })
 }
 
 /// Reads a number with its unit, in SI: `parse("0.062 in", Quantity::Length)` is 0.0015748.

@@ -50,10 +50,14 @@ fn property_threads_and_resuming_do_not_change_a_byte() {
     let provenance = place.bytes("parts/provenance.json");
     let provenance: serde_json::Value = serde_json::from_slice(&provenance).expect("JSON");
     assert_eq!(provenance["samples_read_again"].to_string(), SHORTER, "they were kept");
-    // A longer run holds every shorter one.
-    run(&place, "parts", &["--samples", SHORTER, "--resume"]).ended_with(3);
-    run(&place, "short", &["--samples", SHORTER]).ended_with(3);
-    assert_same(&place, "short", "parts");
+    // Going on never takes samples away: a shorter run is refused, and the table stays.
+    let refused = run(&place, "parts", &["--samples", SHORTER, "--resume"]).ended_with(1);
+    for text in [&format!("it has {WHOLE} samples"), &format!("--samples {WHOLE} or more"), "--out"]
+    {
+        assert!(refused.err.contains(text), "{text}: {}", refused.err);
+    }
+    assert_same(&place, "one", "parts");
+    assert_eq!(place.unfinished(), Vec::<std::path::PathBuf>::new());
 }
 
 #[test]

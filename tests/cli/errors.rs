@@ -121,3 +121,33 @@ fn property_a_study_without_uncertainty_says_what_to_do() {
     let answer = reeldown(&["run", &study, "--out", &out]).ended_with(1);
     assert_says(&answer, &["certain.toml:1:1", "lacks the key `card`", "what is uncertain"]);
 }
+
+#[test]
+fn regression_a_bare_temperature_that_cannot_be_meant_is_one_clear_error() {
+    let place = Place::new("kelvin");
+    let set = ["--set", "initial.temperature=40"];
+    let over = ["--nominal", "--over", "initial.temperature=40..300:3"];
+    let origin = ["--set:1:21", "--over:1:21"];
+    let commands = [&["descend"][..], &["check"], &["run"], &["rig", "--force", "6000 lbf"]]
+        .map(|c| (c, &set[..]));
+    for (command, option) in commands.into_iter().chain([(&["sweep"][..], &over[..])]) {
+        let answer = reeldown(&[command, option].concat()).ended_with(1);
+        assert!(origin.iter().any(|place| answer.err.contains(place)), "{}", answer.err);
+        let parts =
+            ["40 without a unit is 40 K, which is -387.7 °F", "with its unit", "write \"40 °F\""];
+        assert_says(&answer, &parts);
+    }
+    let study = "title = \"x\"\ncard = \"card.toml\"\n[design]\ninitial.temperature = 60\n";
+    assert_says(&answer(&place, study, CARD), &["bad.toml:4:23", "60 without a unit is 60 K"]);
+    let study = "title = \"x\"\ncard = \"card.toml\"\n";
+    let card = CARD.replace("mean = \"60 °F\"", "mean = 60");
+    assert_ne!(card, CARD);
+    assert_says(&answer(&place, study, &card), &["card.toml:", "60 without a unit is 60 K"]);
+    // What can have been meant, or is written out, is taken: a fault then says what is far from the usual.
+    reeldown(&["check", "--set", "initial.temperature=289"]).ended_with(0);
+    let fault = reeldown(&["descend", "--set", "initial.temperature=40 K"]).ended_with(1);
+    assert_says(
+        &fault,
+        &["step-too-small", "initial.temperature = -387.67 °F (40 K) is farthest", "60 °F"],
+    );
+}

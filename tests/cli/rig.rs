@@ -59,13 +59,10 @@ fn property_a_recorded_run_in_engineers_units() {
 
 #[test]
 fn property_mistakes_on_the_rig_are_one_clear_error() {
-    let cases: [(&[&str], &str); 9] = [
-        (&["rig"], "what pulls?"),
-        (&["rig", "--force", "6000 lbf", "--speed", "2 ft/s"], "--compare takes several"),
+    let cases: [(&[&str], &str); 6] = [
         (&["rig", "--force", "6000 lb"], "lb is a mass; write lbf"),
         (&["rig", "--force", "0 lbf"], "pulls no line"),
         (&["rig", "--speed=-1 ft/s"], "pulls no line"),
-        (&["rig", "--plan", "--force", "1 lbf"], "--plan chooses its levels itself"),
         (&["rig", "--plan", "--starts", "60"], "has no unit"),
         (&["rig", "--compare", "--force-gain", "0 %"], "systematic error of force"),
         (&["rig", "--recorded", "no-such.csv"], "cannot read no-such.csv"),
@@ -76,8 +73,20 @@ fn property_mistakes_on_the_rig_are_one_clear_error() {
         assert_eq!(answer.err.matches("error: ").count(), 1, "{}", answer.err);
         assert_eq!(answer.out, "");
     }
-    reeldown(&["rig", "--plan", "9"]).ended_with(2);
-    reeldown(&["rig", "--recorded", "x.csv", "--force", "1 lbf"]).ended_with(2);
+    // Options that contradict each other, or lack one, are misuse.
+    let cases: [(&[&str], &str); 6] = [
+        (&["rig"], "what pulls?"),
+        (&["rig", "--force", "6000 lbf", "--speed", "2 ft/s"], "--compare takes several"),
+        (&["rig", "--plan", "--force", "1 lbf"], "cannot be used with"),
+        (&["rig", "--compare", "--thermometers", "none,fluid"], "none goes with no other node"),
+        (&["rig", "--plan", "9"], "9 is not in 1..=4"),
+        (&["rig", "--recorded", "x.csv", "--force", "1 lbf"], "cannot be used with"),
+    ];
+    for (arguments, expected) in cases {
+        let answer = reeldown(arguments).ended_with(2);
+        assert!(answer.err.contains(expected), "{arguments:?}: {}", answer.err);
+        assert_eq!(answer.out, "");
+    }
 }
 
 #[test]
@@ -99,6 +108,32 @@ fn property_the_modes_keep_the_proof_load_and_every_parameter_gains() {
         reeldown(&["rig", "--compare", "--force", "9500 lbf", "--json"]).ended_with(0).json();
     let share = found["modes"][0]["load_over_proof"].as_f64().unwrap();
     assert!((share - 9500.0 / 9000.0).abs() < 1e-9, "{share}");
+}
+
+#[test]
+fn regression_a_constant_force_has_no_time_of_its_peak_and_the_model_is_named() {
+    let place = Place::new("rig-constant");
+    let found = reeldown(&["rig", "--compare", "--json"]).ended_with(0).json();
+    let modes = found["modes"].as_array().expect("modes");
+    assert!(modes[0]["peak_force_time_s"].is_null(), "{}", modes[0]["peak_force_time_s"]);
+    for mode in &modes[1..] {
+        assert!(mode["peak_force_time_s"].as_f64().expect("a time") >= 0.0);
+    }
+    assert_eq!(found["model"], "quasi-steady");
+    let (figures, one) = (place.at("figures"), place.at("one"));
+    let shown = reeldown(&["rig", "--compare", "--figures", &figures]).ended_with(0).out;
+    let after = shown.lines().find(|line| line.trim_start().starts_with("after")).expect("a row");
+    assert!(after.contains("constant"), "{after}");
+    let single = reeldown(&["rig", "--force", "6000 lbf", "--figures", &one]).ended_with(0).out;
+    let plan = ["rig", "--plan", "1", "--starts", "60 °F"];
+    let planned = reeldown(&plan).ended_with(0).out;
+    let paper = reeldown(&["paper"]).ended_with(0).out;
+    for text in [&shown, &single, &planned, &paper] {
+        assert!(text.contains("quasi-steady model"), "{text}");
+    }
+    let drawn = |name: &str| String::from_utf8(place.bytes(name)).expect("text");
+    assert!(drawn("one/rig-force.svg").contains("Quasi-steady model: 6000 lbf throughout"));
+    assert!(drawn("figures/rig-modes-force.svg").contains("Quasi-steady model: held are"));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Joint samples in cards: from CSV and Parquet, replayed, and refused when the file is another.
 
 use super::program::{Place, reeldown};
+use reeldown::store::{Field, write_table};
 
 const STUDY: &str = "title = \"joint\"\ncard = [\"base.toml\", \"card.toml\"]\n\
     [limits]\ntime = { max = \"210 s\" }\n[sampling]\nsamples = 512\n[sensitivity]\nbase_samples = 64\n\
@@ -160,4 +161,59 @@ fn property_a_calibrated_card_tells_what_it_changed() {
         report.contains("## What did the calibration change?") && report.contains("p-box-time.svg")
     );
     assert_eq!(run("two"), found, "the same bytes again");
+}
+
+#[test]
+fn regression_a_row_without_a_number_names_file_column_row_and_what_was_expected() {
+    let place = Place::new("together-gaps");
+    write(&place, "base.toml", include_str!("../../distributions/habe.toml"));
+    write(&place, "study.toml", STUDY);
+    let refused = |file: &str| {
+        let card = format!("[[joint]]\nfile = \"{file}\"\nknown = \"never\"\nsource = \"test\"\n");
+        write(&place, "card.toml", &card);
+        reeldown(&["check", &place.at("study.toml")]).ended_with(1).err
+    };
+    write(&place, "text.csv", "fluid.shear_factor\n1.0\nthin\n");
+    write(&place, "empty.csv", "fluid.shear_factor,note\n1.0,a\n1.1,b\n,c\n");
+    let numbers = Field::Number(vec![Some(1.0), Some(1.1), None]);
+    let null = place.path().join("null.parquet");
+    write_table(&null, vec![("fluid.shear_factor".to_owned(), numbers)], Vec::new())
+        .expect("a table");
+    let texts = Field::Text(vec![Some("thin".to_owned()), Some("thick".to_owned())]);
+    let text = place.path().join("text.parquet");
+    write_table(&text, vec![("fluid.shear_factor".to_owned(), texts)], Vec::new())
+        .expect("a table");
+    for (file, found) in [
+        ("text.csv", "line 3: \"thin\" is not a finite number"),
+        ("empty.csv", "line 4: \"\" is not a finite number"),
+        ("null.parquet", "row 3 of column fluid.shear_factor is null"),
+        ("text.parquet", "it holds no numbers"),
+    ] {
+        let message = refused(file);
+        let expected = "expected a finite number in every row of the column";
+        for part in [file, "column \"fluid.shear_factor\"", found, expected] {
+            assert!(message.contains(part), "{file}: {part}: {message}");
+        }
+    }
+}
+
+#[test]
+fn regression_rare_breaches_of_joint_samples_say_why_there_is_no_estimate() {
+    let place = Place::new("together-rare");
+    let study = concat!(env!("CARGO_MANIFEST_DIR"), "/reports/calibrated/study.toml");
+    let mut arguments = vec!["run", study, "--samples", "400"];
+    for set in ["sensitivity.base_samples=0", "trade.samples=0", "epistemic.outer=0"] {
+        arguments.extend(["--set", set]);
+    }
+    let out = place.at("run");
+    arguments.extend(["--out", &out]);
+    let answer = reeldown(&arguments).ended_with(3);
+    let words = answer.out.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(!words.contains("none none"), "{}", answer.out);
+    for why in [
+        "above 450 °F: no estimate sharper than the samples' own. No interval from subset simulation: ",
+        "No interval from importance sampling: no design-point search converged",
+    ] {
+        assert!(words.contains(why), "{}", answer.out);
+    }
 }

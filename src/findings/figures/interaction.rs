@@ -117,7 +117,8 @@ fn strongest<'a>(
 ) -> Option<(&'a DriverOutput, [&'a str; 2])> {
     let limited = study.limits.iter().map(|limit| limit.outcome.name());
     std::iter::once("breach.any").chain(limited).find_map(|name| {
-        let output = drivers.outputs.iter().find(|output| output.name == name)?;
+        let ranks = |o: &&DriverOutput| o.name == name && o.too_few.is_none();
+        let output = drivers.outputs.iter().find(ranks)?;
         let mut factors: Vec<(f64, &str)> = output
             .factors
             .iter()

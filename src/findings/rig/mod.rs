@@ -10,9 +10,9 @@ pub use information::Instruments;
 pub use plan::{Candidate, Combination, PlanFinding, PlanOptions, plan};
 pub use run::{Residual, RigRun, held, recorded};
 
-use crate::descent::OutcomeQuantity;
 use crate::descent::driven::Drive;
 use crate::descent::reference;
+use crate::descent::{Model, OutcomeQuantity};
 use crate::error::{Error, Result};
 use crate::physics::{Coefficients, Design};
 use crate::study::Study;
@@ -32,15 +32,16 @@ const LONGEST_STEP_S: f64 = 0.25;
 /// If it cannot be integrated.
 pub fn flight(design: &Design) -> Result<RigRun> {
     let c = Coefficients::new(design);
-    let model = crate::descent::Model::QuasiSteady;
-    let run =
-        reference::trajectory(&c, model, TOLERANCE, LONGEST_STEP_S).map_err(cannot_compute)?;
+    let run = reference::trajectory(&c, Model::QuasiSteady, TOLERANCE, LONGEST_STEP_S)
+        .map_err(cannot_compute)?;
     Ok(RigRun { samples: run.samples, outcome: run.outcome, residuals: Vec::new() })
 }
 
 /// The three modes as options for a test.
 #[derive(Debug, Clone, Serialize)]
 pub struct Comparison {
+    /// The model of the flight and of every run, whatever the study's: quasi-steady.
+    pub model: &'static str,
     /// Load that no run may exceed, N.
     pub proof_load_n: f64,
     /// The instruments.
@@ -68,10 +69,10 @@ pub struct ModeFinding {
     pub reduced: bool,
     /// Length of the run, s.
     pub duration_s: f64,
-    /// Highest load, N, and the time it is reached, s.
+    /// Highest load, N, and the time it is first reached, s; none if the load is constant.
     pub peak_force_n: f64,
     /// See `peak_force_n`.
-    pub peak_force_time_s: f64,
+    pub peak_force_time_s: Option<f64>,
     /// Highest load over the proof load.
     pub load_over_proof: f64,
     /// Energy put into the brake, J.
@@ -141,6 +142,7 @@ pub fn compare(
         });
     }
     Ok(Comparison {
+        model: Model::QuasiSteady.name(),
         proof_load_n,
         instruments: instruments.clone(),
         flight_means: means,

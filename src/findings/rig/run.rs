@@ -20,6 +20,9 @@ const LONGEST_STEP_S: f64 = 0.25;
 /// up above the rotors, in a few times `C1/K12` = 6 s.
 const WARM_UP: f64 = 0.1;
 
+/// Relative difference below which readings are the same.
+const EQUAL: f64 = 1e-9;
+
 /// A computed run.
 #[derive(Debug, Clone)]
 pub struct RigRun {
@@ -49,10 +52,15 @@ pub struct Residual {
 }
 
 impl RigRun {
-    /// The highest of a reading and when it was reached.
-    pub fn peak(&self, read: impl Fn(&Sample) -> f64) -> (f64, f64) {
-        let top = self.samples.iter().max_by(|a, b| read(a).total_cmp(&read(b)));
-        top.map_or((f64::NAN, f64::NAN), |sample| (read(sample), sample.time_s))
+    /// The highest of a reading, and when it was first reached, s: none if it is constant, where the last bit
+    /// of rounding would choose the time.
+    pub fn peak(&self, read: impl Fn(&Sample) -> f64) -> (f64, Option<f64>) {
+        let values = || self.samples.iter().map(&read);
+        let top = values().fold(f64::NAN, f64::max);
+        let least = values().fold(f64::NAN, f64::min);
+        let near = top - EQUAL * top.abs();
+        let first = self.samples.iter().find(|sample| read(sample) >= near);
+        (top, first.filter(|_| least < near).map(|sample| sample.time_s))
     }
 
     /// Energy put into the brake, J, by the trapezoidal rule.

@@ -168,16 +168,15 @@ pub fn band(halves: &Halves, shares: &[f64], at: &[f64], confidence: f64) -> Res
     let differences: f64 = pairs.iter().map(|(a, b)| (a - b) * (a - b)).sum();
     let happened = pairs.iter().filter(|(a, b)| a + b > 0.0).count();
     let failed_to = pairs.iter().filter(|(a, b)| a + b < 2.0).count();
-    let too_few = |count: usize| (count as f64) < LEAST_TOLD * sets as f64;
-    let untold = match (too_few(happened), too_few(failed_to)) {
-        (true, _) => Some(format!("it happened with {happened} of {sets} sets of values only")),
-        (_, true) => {
-            Some(format!("with all but {failed_to} of {sets} sets of values it always happened"))
-        }
-        _ => None,
-    };
+    let untold = untold(happened, failed_to, sets);
+    let mut mean = estimate(0);
+    if happened == 0 || failed_to == 0 {
+        // P(event) is at most the share of sets that would see it at all, and the sets are independent.
+        let share = if happened == 0 { 0.0 } else { 1.0 };
+        mean.interval = binomial(share, sets as f64, confidence).into();
+    }
     Ok(Band {
-        mean: estimate(0),
+        mean,
         standard_deviation: estimate(1),
         quantiles: shares
             .iter()
@@ -194,6 +193,23 @@ pub fn band(halves: &Halves, shares: &[f64], at: &[f64], confidence: f64) -> Res
         noise: (0.25 * differences / sets as f64).sqrt(),
         left_out: halves.first.len() - sets,
     })
+}
+
+/// Why the quantiles of P(event | set) cannot be told, where an event `happened` with so few of the `sets`, or
+/// `failed_to` happen with so few, that those say nothing of the law over all sets.
+pub fn untold(happened: usize, failed_to: usize, sets: usize) -> Option<String> {
+    let too_few = |count: usize| (count as f64) < LEAST_TOLD * sets as f64;
+    match (happened, failed_to) {
+        _ if sets == 0 => Some("no set of values could be evaluated".to_owned()),
+        (_, 0) => Some(format!("it always happened, with each of {sets} sets of values")),
+        _ if too_few(happened) => {
+            Some(format!("it happened with {happened} of {sets} sets of values only"))
+        }
+        _ if too_few(failed_to) => {
+            Some(format!("with all but {failed_to} of {sets} sets of values it always happened"))
+        }
+        _ => None,
+    }
 }
 
 /// A number of all sets with the error that its values by section show.

@@ -5,6 +5,9 @@ use super::axis::Axis;
 use super::chart::{Chart, HEIGHT, PALETTE};
 use super::key::Swatch;
 
+/// What captions of quasi-steady curves begin with.
+pub(super) const QUASI_STEADY: &str = "Quasi-steady model:";
+
 /// One curve, in the units shown.
 pub(super) struct Curve {
     /// Its name in the key; empty for none.

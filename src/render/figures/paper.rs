@@ -103,7 +103,8 @@ fn course(runs: &PaperRuns, (place, name, title, label, read): Curve) -> Option<
         chart.horizontal_limit(limit, &format!("limit {limit} °F"));
     }
     let caption = format!(
-        "From {} at release, at most {} after {} s, to {} at the end.",
+        "{} from {} at release, at most {} after {} s, to {} at the end.",
+        curves::QUASI_STEADY,
         number(first.1, 4),
         number(top.1, 4),
         number(top.0, 3),
@@ -134,7 +135,11 @@ pub fn starting_temperature_figure(family: &[(f64, Vec<Sample>)]) -> Option<Figu
     let panel = curves::Panel {
         name: "figure-10-starting-temperatures",
         title: "Figure 10: velocity from several starting temperatures".to_owned(),
-        caption: format!("Each curve ends with the line: {}.", times.join(", ")),
+        caption: format!(
+            "{} each curve ends with the line, {}.",
+            curves::QUASI_STEADY,
+            times.join(", ")
+        ),
         x: "time since release (s)",
         y: format!("separation velocity ({})", unit.symbol),
         from_zero: true,

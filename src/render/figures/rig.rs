@@ -1,7 +1,7 @@
 //! Figures of runs on the horizontal rig: one run, and the three modes side by side.
 
 use super::Figure;
-use super::curves::{Curve, Panel, figure};
+use super::curves::{Curve, Panel, QUASI_STEADY, figure};
 use crate::descent::reference::Sample;
 use crate::findings::rig::{Comparison, RigRun};
 use crate::render::figures_of_speech::value;
@@ -48,8 +48,13 @@ pub fn rig_figures(
         let seen = record.and_then(|record: &MeasuredRun| measured(record, column, quantity));
         let (top, at) = run.peak(read);
         let begin = run.samples.first().map_or(0.0, |s| s.time_s);
-        let caption =
-            format!("At most {} after {} s.", value(top, quantity), number(at - begin, 4));
+        let peak = match at {
+            Some(at) => {
+                format!("at most {} after {} s", value(top, quantity), number(at - begin, 4))
+            }
+            None => format!("{} throughout", value(top, quantity)),
+        };
+        let caption = format!("{QUASI_STEADY} {peak}.");
         let panel = Panel {
             name,
             title: title.to_owned(),
@@ -120,7 +125,7 @@ fn temperatures(
     let top = run.peak(|s| s.temperatures_k[0]).0;
     let end = run.samples.last().map_or([f64::NAN; 3], |s| s.temperatures_k);
     let caption = format!(
-        "The fluid reaches {}; rotors end at {}, the housing at {}.",
+        "{QUASI_STEADY} the fluid reaches {}; rotors end at {}, the housing at {}.",
         value(top, quantity),
         value(end[1], quantity),
         value(end[2], quantity)
@@ -161,7 +166,7 @@ pub fn rig_mode_figures(comparison: &Comparison) -> Vec<Figure> {
             let panel = Panel {
                 name,
                 title: title.to_owned(),
-                caption: format!("Held: {}.", levels.join(", ")),
+                caption: format!("{QUASI_STEADY} held are {}.", levels.join(", ")),
                 x: TIME,
                 y: label(what, quantity),
                 from_zero: zero,

@@ -6,7 +6,7 @@ use super::chart::{BLUE, Chart, HEIGHT, INK};
 use super::key::Swatch;
 use crate::descent::OutcomeQuantity;
 use crate::findings::{EpistemicEvent, EpistemicFinding, ProbabilityBox};
-use crate::render::figures_of_speech::probability;
+use crate::render::figures_of_speech::{lies_between, probability};
 use crate::units::display;
 
 /// The belief about P(any breach), then a p-box for every limited outcome.
@@ -64,9 +64,8 @@ fn belief(event: &EpistemicEvent) -> Option<Figure> {
     let at =
         |share: f64| event.quantiles.iter().find(|(s, _)| *s == share).and_then(|(_, e)| e.value);
     let alternative = format!(
-        "Rising curve; 90 % of belief lies between {} and {}, the mean is {}.",
-        at(0.05).map_or("–".to_owned(), probability),
-        at(0.95).map_or("–".to_owned(), probability),
+        "Rising curve; 90 % of belief {}, the mean is {}.",
+        lies_between(at(0.05)?, at(0.95)?),
         probability(mean)
     );
     let svg = chart.svg(&title, &alternative);
@@ -101,17 +100,26 @@ fn p_box(data: &ProbabilityBox) -> Option<Figure> {
     let caption = "Each set of constants has its own distribution function; at every value, 90 % of our belief \
                    about it lies in the band. The width is what is not known; the slope is what varies."
         .to_owned();
-    let at = |curve: &[f64]| {
-        let place = data.thresholds.partition_point(|t| *t < data.limit).min(curve.len() - 1);
-        curve.get(place).map_or("–".to_owned(), |p| probability(*p))
+    let place = data.thresholds.partition_point(|t| *t < data.limit);
+    let at = |curve: &[f64]| curve.get(place).or(curve.last()).copied();
+    let (low, high, mean) = (at(low)?, at(high)?, at(&data.mean)?);
+    let less = match mean {
+        1.0 => "every descent with every set of constants has less".to_owned(),
+        0.0 => "no descent with any set of constants has less".to_owned(),
+        // A band that prints as one value says less than the mean.
+        _ if probability(low) == probability(high) && mean > 0.5 => {
+            format!("the probability of more is {} on average", probability(1.0 - mean))
+        }
+        _ if probability(low) == probability(high) => {
+            format!("the probability of less is {} on average", probability(mean))
+        }
+        _ => format!(
+            "the probability of less {}, on average {}",
+            lies_between(low, high),
+            probability(mean)
+        ),
     };
-    let alternative = format!(
-        "Band of rising curves; at the limit {} the probability of less lies between {} and {}, on average {}.",
-        data.limit_text,
-        at(low),
-        at(high),
-        at(&data.mean)
-    );
+    let alternative = format!("Band of rising curves; at the limit {} {less}.", data.limit_text);
     let svg = chart.svg(&title, &alternative);
     Some(Figure { name, title, caption, alternative, svg })
 }
