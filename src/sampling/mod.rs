@@ -216,7 +216,9 @@ impl Sampler {
             self.points_per_replicate()
         );
         match self.design {
-            Design::MonteCarlo => format!("plain Monte Carlo: {shape}, every sample independent of the rest"),
+            Design::MonteCarlo => {
+                format!("plain Monte Carlo: {shape}, every sample independent of the rest")
+            }
             Design::LatinHypercube => format!("Latin hypercube: {shape} in {shared} points"),
             Design::Sobol => format!(
                 "Sobol' sequence (Joe and Kuo's direction numbers, Owen-scrambled): {shape} in {shared} points"
