@@ -3,6 +3,7 @@
 use super::super::rosenbrock;
 use super::super::start::at_rest;
 use super::*;
+use crate::numerics::elementary::ln;
 use crate::physics::{Coefficients, Design, Parameter, Target};
 
 /// The baseline with its viscosity times a factor, at another temperature.
