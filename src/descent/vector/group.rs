@@ -55,6 +55,8 @@ pub struct Group<V, M, const N: usize> {
     fresh: V,
     /// How the lane has finished, if it has.
     finished: V,
+    /// Until when the state is not that of the descent yet, s.
+    settled: V,
     peaks: Peaks<V>,
     /// Observables at the state.
     seen: [V; OBSERVABLES],
@@ -74,6 +76,7 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
             attempts: zero,
             fresh: zero,
             finished: zero,
+            settled: start.settled,
             peaks: Peaks::new(start.peaks),
             seen: [zero; OBSERVABLES],
             inverse_tolerance: V::splat(1.0 / local_tolerance),
@@ -93,6 +96,7 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
         self.attempts.lanes_mut()[lane] = 0.0;
         self.fresh.lanes_mut()[lane] = 1.0;
         self.finished.lanes_mut()[lane] = RUNNING;
+        self.settled.lanes_mut()[lane] = starts.settled.lanes()[from];
         self.peaks.restart(lane, &starts.peaks, from);
     }
 
@@ -117,8 +121,8 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
         self.seen = self.model.observe(&self.state, &moment);
         let velocity = M::velocity(&moment);
         let slopes = self.model.observable_rates(&moment, self.peaks.stiff_rate(velocity));
-        // A start beyond the initial layer lies before the line's beginning: nothing is there to be seen.
-        let real = zero.le(self.state[0]);
+        // Within the initial layer a start beyond it is not the descent's own state: nothing is there to be seen.
+        let real = self.settled.le(self.state[N - 1]);
         self.peaks.arrive(real, velocity, &self.seen, &slopes);
         moment
     }

@@ -18,8 +18,9 @@
 //! σ = 0, to the order of `ε` in the way and the warming and of `ε²` in the pull,
 //! ```text
 //! λ = −1 + 47/12 ε − 5/2 ρ − 3 μ         θ = −2/(1 − k) + 1/(2 − k) + 77/12 ε − 9/2 ρ − 11/2 μ
-//! f = 1 − 5/2 ε                          f' = ε (1 + 5/2 k) + (5 g − 21/2) ε² − ρ − μ
-//! f'' = (3 − 2 g) ε² − ε k               f''' ≈ ε (k² − 4 ε k + 4 ε²)
+//! f = 1 − 5/2 ε + 2 ρ + 2 μ
+//! f' = ε (1 + 5/2 k + (5 g − 21/2) ε + 37/2 ρ + 15 μ) − ρ − μ − 8 ρ² − 11 ρ μ − 3 μ²
+//! f'' = ε ((3 − 2 g) ε − k − 6 ρ − 5 μ) + 3 ρ² + 4 ρ μ + μ²      f''' ≈ ε (k² − 4 ε k + 4 ε²)
 //! ```
 //! so that it sets out *before* the line's beginning and with a fluid that is colder than it was. Rotors,
 //! housing and the common centre follow from what the layer's warmth and velocity lack to first order; the
@@ -28,11 +29,13 @@
 //! # Peaks
 //! An observable that falls along the outer solution has its largest value at the end of the layer, where
 //! `O + Ȯ t + ½ Ö t² − A e^{−t/τ}` is largest: at `t = τ ln(A/(−Ȯ τ))`. That is where the line's tension peaks
-//! in an ordinary descent, some 0.03 % below the weight.
+//! in an ordinary descent, some 0.03 % below the weight. Where the warming outweighs the narrowing reel and the
+//! fading load several times, everything else rises throughout the layer. Nothing is read off the outer solution
+//! before it is the descent.
 //!
 //! # Where it holds
 //! What is left out is estimated, and a lane goes the long way where that is more than a share of the
-//! tolerance. Against fine steps from rest (300 members of the default study, 1 500 of a stress set) no error
+//! tolerance, or the layer is not slight against everything else. Against fine steps from rest (300 members of the default study, 1 500 of a stress set) no error
 //! was more than 1.1 times its estimate, most were a quarter of it. At a tolerance of 1e-6 most members of
 //! the default study start beyond the layer, at 1e-7 hardly any. Thinning with shear goes the long way
 //! always.
@@ -51,8 +54,15 @@ use crate::numerics::lanes::{Lanes, Mask};
 const SHARE: f64 = 0.2;
 /// The same for the peaks, which keep to thirty times the tolerance of the outcomes.
 const PEAK_SHARE: f64 = 12.0;
-/// Longest layer, in shares of the line and in time constants of the fluid's cooling.
-const LONGEST: [f64; 2] = [1.0 / 300.0, 1.0 / 20.0];
+/// Longest layer: `v∞ τ` as a share of the line, and `τ` of the time constants of the fluid's cooling and of the
+/// balloon's settling.
+const LONGEST: [f64; 3] = [1.0 / 2000.0, 1.0 / 25.0, 1.0 / 50.0];
+/// Largest share of the balloon's drag in the damping.
+const MOST_DRAG: f64 = 1.0 / 50.0;
+/// Largest share of `ε` that `ρ + μ` may be: the descent then gets faster throughout the layer.
+const MOST_SLOWING: f64 = 1.0 / 4.0;
+/// Time constants after which the outer solution is the descent: e⁻¹⁶ is 1e-7.
+const SETTLED: f64 = 16.0;
 
 /// The start beyond the initial layer, and where it is accurate enough for a step's tolerance.
 #[inline(always)]
@@ -62,13 +72,14 @@ pub fn passed<V: Lanes>(k: &Constants<V>, local_tolerance: f64) -> (V::Mask, Sta
     let fits = outcomes
         .lt(V::splat(SHARE * local_tolerance))
         .and(peaks.lt(V::splat(PEAK_SHARE * local_tolerance)))
-        .and((layer.way * k.inverse_length).lt(V::splat(LONGEST[0])))
-        .and(layer.cooling.lt(V::splat(LONGEST[1])))
+        .and(layer.is_slight(k))
         .and(k.cross_on.lt(V::splat(0.5)));
     let state = layer.state(k);
-    let peaks = layer.peaks(k, &state);
+    let (falls, peaks) = layer.peaks(k, &state);
+    let fits = fits.and(falls);
     let step = warming_step(k, layer.v);
-    (fits, Start { state, leg: V::splat(PAYING_OUT), step, peaks })
+    let settled = V::splat(SETTLED) * layer.tau;
+    (fits, Start { state, leg: V::splat(PAYING_OUT), step, peaks, settled })
 }
 
 /// The layer's scales and small numbers; see the module.
@@ -153,12 +164,16 @@ impl<V: Lanes> Layer<V> {
         let shift = self.gain * k.inverse_mass - value(1.5) * (k.share_slope * self.v);
         let centre = k.rise_speed + self.way * shift;
 
-        let balloon = centre + eta * (self.v * (one - value(2.5) * eps));
+        let slowed = value(2.5) * eps - two * (slow[0] + slow[1]);
+        let balloon = centre + eta * (self.v * (one - slowed));
         let lift = k.free_lift - k.drag * (balloon * balloon.abs());
         let w = self.v / k.full_radius_squared;
         let load = k.weight - k.extraction * line + eta * lift - k.spool_pull * (w * w);
-        let second = value(2.5) * self.cooling + value(5.0) * self.bend - value(10.5) * eps;
-        let lag = eps * (one + second) - slow[0] - slow[1];
+        let heating = value(2.5) * self.cooling + value(5.0) * self.bend - value(10.5) * eps;
+        let crossed = value(18.5) * slow[0] + value(15.0) * slow[1];
+        let slowing = value(8.0) * (slow[0] * slow[0])
+            + slow[1] * (value(11.0) * slow[0] + value(3.0) * slow[1]);
+        let lag = eps * (one + heating + crossed) - slow[0] - slow[1] - slowing;
         [
             line,
             centre,
@@ -170,9 +185,10 @@ impl<V: Lanes> Layer<V> {
         ]
     }
 
-    /// The largest values of the observables within the layer, −∞ where they come after it.
+    /// The largest values of the observables within the layer, and whether the tension falls throughout the outer
+    /// solution's part of it. What rises with the velocity begins at zero and is largest later.
     #[inline(always)]
-    fn peaks(&self, k: &Constants<V>, state: &[V; STATES]) -> [V; OBSERVABLES] {
+    fn peaks(&self, k: &Constants<V>, state: &[V; STATES]) -> (V::Mask, [V; OBSERVABLES]) {
         let value = V::splat;
         let (zero, one, two) = (value(0.0), value(1.0), value(2.0));
         let (eps, cooling, tau) = (self.eps, self.cooling, self.tau);
@@ -180,7 +196,11 @@ impl<V: Lanes> Layer<V> {
             Dynamic { constants: *k, clock: Clock { length: zero, time: one }, any_cross: false };
         let moment = outer.moment(state);
         let load_rate = outer.load_rate(&moment);
-        let curve = eps * (value(3.0) * eps - two * self.bend - cooling);
+        let slow = [self.narrowing, self.fading];
+        let heating = value(3.0) * eps - two * self.bend - cooling;
+        let crossed = value(6.0) * slow[0] + value(5.0) * slow[1];
+        let slowing = value(3.0) * (slow[0] * slow[0]) + slow[1] * (value(4.0) * slow[0] + slow[1]);
+        let curve = eps * (heating - crossed) + slowing;
         let pull_rate = load_rate - self.weight * curve / tau;
         let values = outer.observe(state, &moment);
         let slopes = outer.observable_rates(&moment, pull_rate);
@@ -197,20 +217,27 @@ impl<V: Lanes> Layer<V> {
         let third = eps * (cooling * cooling + value(4.0) * eps * (eps - cooling));
         let tension_bend = tau * load_bend - flown * (self.weight * third);
 
-        let mut peaks = [value(f64::NEG_INFINITY); OBSERVABLES];
-        peaks[0] = k.initial_temperature;
-        for (n, share, bend) in
-            [(1, flown, tension_bend), (2, two, zero), (3, two, zero), (4, one, zero)]
-        {
-            let fall = -(slopes[n] * tau);
-            let falls = zero.lt(fall);
-            if falls.any() {
-                let times = ln((share * values[n]) / V::select(falls, fall, one));
-                let top = values[n] - fall * (one + times) + value(0.5) * bend * (times * times);
-                peaks[n] = V::select(falls, top, peaks[n]);
-            }
-        }
-        peaks
+        let tension = values[1];
+        let fall = -(slopes[1] * tau);
+        let falls = (value(2.0 * SETTLED) * tension_bend.abs()).lt(fall);
+        let times = ln((flown * tension) / V::select(falls, fall, one));
+        let top = tension - fall * (one + times) + value(0.5) * tension_bend * (times * times);
+        (falls, [k.initial_temperature, top, zero, zero, zero])
+    }
+
+    /// Whether the layer is short against all else, and the descent gets faster throughout it by the warming.
+    #[inline(always)]
+    fn is_slight(&self, k: &Constants<V>) -> V::Mask {
+        let value = V::splat;
+        let settling = self.tau * (self.gain / k.payload_share * k.inverse_mass);
+        let drag = k.payload_share * self.gain / self.damping;
+        let slowing = self.narrowing + self.fading;
+        (self.way * k.inverse_length)
+            .lt(value(LONGEST[0]))
+            .and(self.cooling.lt(value(LONGEST[1])))
+            .and(settling.lt(value(LONGEST[2])))
+            .and(drag.lt(value(MOST_DRAG)))
+            .and(slowing.lt(value(MOST_SLOWING) * self.eps))
     }
 
     /// Estimates of the relative errors of the constrained outcomes and of the peaks.

@@ -2,8 +2,10 @@
 
 use super::super::rosenbrock;
 use super::super::start::at_rest;
+use super::super::{Settings, descend};
 use super::*;
-use crate::numerics::elementary::ln;
+use crate::descent::{Fault, Model};
+use crate::numerics::elementary::{exp, ln};
 use crate::physics::{Coefficients, Design, Parameter, Target};
 
 /// The baseline with its viscosity times a factor, at another temperature.
@@ -55,7 +57,7 @@ fn property_the_outer_solution_is_met_when_the_layer_has_passed() {
             let pull = 0.01 * (outer[2] / real[2] - 1.0).abs();
             let off = line + heat + pull;
             assert!(off <= outcomes, "{viscosity} {temperature_k}: {off:e} for {outcomes:e}");
-            let off = (layer.peaks(&k, &start)[1] / tension - 1.0).abs();
+            let off = (layer.peaks(&k, &start).1[1] / tension - 1.0).abs();
             assert!(off <= 1.1 * peaks, "{viscosity} {temperature_k}: {off:e} for {peaks:e}");
         }
     }
@@ -88,5 +90,63 @@ fn analytic_what_is_left_out_is_of_second_order() {
     for (large, small) in [(thin.1, thick.1), (thin.2, thick.2)] {
         let order = ln(large / small) / ratio;
         assert!((1.8..2.4).contains(&order), "order {order}: {small:e}, {large:e}");
+    }
+}
+
+/// Designs of every kind: wherever one starts beyond the layer, its outcomes keep to fifteen times the tolerance and its
+/// peaks to a hundred times it, as a stress set's do.
+#[test]
+fn property_whatever_starts_beyond_the_layer_keeps_the_tolerance() {
+    use Parameter as P;
+    // Factors on the baseline, from … to, spread evenly in their logarithm.
+    let spreads = [
+        (P::ReelLineLength, 0.03, 3.0),
+        (P::PayloadWeight, 0.06, 2.0),
+        (P::FluidNominalViscosity, 0.05, 4.0),
+        (P::ThermalFluidCapacity, 0.2, 100.0),
+        (P::BalloonDragArea, 0.005, 3.0),
+        (P::BalloonMass, 0.1, 3.0),
+        (P::ReelInertia, 0.01, 5.0),
+        (P::ThermalFluidRotorConductance, 0.01, 10.0),
+        (P::PayloadExtractedWeight, 0.02, 1.0),
+    ];
+    let baseline = Design::baseline();
+    let mut state = 12_345u64;
+    let mut uniform = || {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let mut batch = Vec::new();
+    for _ in 0..4000 {
+        let mut design = baseline.clone();
+        let mut weight = 1.0;
+        for (parameter, from, to) in spreads {
+            let factor = exp(ln(from) + (ln(to) - ln(from)) * uniform());
+            weight = if parameter == P::PayloadWeight { factor } else { weight };
+            let scale = if parameter == P::PayloadExtractedWeight { weight } else { 1.0 };
+            design.set(Target::whole(parameter), baseline.get(parameter) * factor * scale);
+        }
+        batch.push(Coefficients::new(&design));
+    }
+    let results = |tolerance: f64, batch: &[Coefficients<f64>]| {
+        let mut results = vec![Err(Fault::NotFinite); batch.len()];
+        descend(Model::Dynamic, &Settings { tolerance }, batch, &mut results);
+        results
+    };
+    for tolerance in [1e-5, 1e-6, 1e-7] {
+        let local_tolerance = Settings { tolerance }.local_tolerance(Model::Dynamic);
+        let mut beyond = batch.clone();
+        beyond.retain(|c| passed(&Constants::new(c), local_tolerance).0);
+        assert!(beyond.len() > 100, "{} of them start beyond the layer", beyond.len());
+        for (k, pair) in results(tolerance, &beyond).iter().zip(results(1e-11, &beyond)).enumerate()
+        {
+            let (Ok(got), Ok(exact)) = pair else { panic!("{k}: {pair:?}") };
+            for (n, (got, exact)) in got.values.iter().zip(&exact.values).enumerate() {
+                let allowed = if n < 3 { 15.0 } else { 100.0 } * tolerance;
+                let off = (got / exact - 1.0).abs();
+                assert!(off <= allowed, "{k}: outcome {n} off by {off:e} at {tolerance:e}");
+            }
+        }
     }
 }

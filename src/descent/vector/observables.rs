@@ -27,6 +27,8 @@ pub struct Peaks<V> {
     /// Step, 0 where it was not accepted, and time per clock at its start.
     step: V,
     start_rate: V,
+    /// 1 where the step's start was real.
+    start_real: V,
     clock: Clock<V>,
     /// Derivative of the stiff variable in the clock at the step's end.
     stiff: V,
@@ -43,6 +45,7 @@ impl<V: Lanes> Peaks<V> {
             slopes: none,
             step: zero,
             start_rate: zero,
+            start_real: zero,
             clock: Clock { length: zero, time: V::splat(1.0) },
             stiff: zero,
         }
@@ -91,7 +94,7 @@ impl<V: Lanes> Peaks<V> {
         end_slopes: &[V; OBSERVABLES],
     ) {
         let zero = V::splat(0.0);
-        let moved = zero.lt(self.step);
+        let moved = zero.lt(self.step).and(V::splat(0.5).lt(self.start_real));
         for n in 0..OBSERVABLES {
             self.values[n] = V::select(real, end[n].max(self.values[n]), self.values[n]);
             let turned = moved.and(zero.lt(self.slopes[n])).and(end_slopes[n].lt(zero));
@@ -103,6 +106,7 @@ impl<V: Lanes> Peaks<V> {
             }
         }
         self.start = *end;
+        self.start_real = V::select(real, V::splat(1.0), zero);
         self.step = zero;
     }
 }

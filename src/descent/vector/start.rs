@@ -19,6 +19,8 @@ pub struct Start<V, const N: usize> {
     pub step: V,
     /// Largest values of the observables before it, −∞ for none.
     pub peaks: [V; OBSERVABLES],
+    /// Until when the state is not that of the descent yet, s.
+    pub settled: V,
 }
 
 impl<V: Lanes, const N: usize> Start<V, N> {
@@ -26,7 +28,7 @@ impl<V: Lanes, const N: usize> Start<V, N> {
     #[inline(always)]
     fn first(state: [V; N], leg: f64, step: V) -> Self {
         let peaks = [V::splat(f64::NEG_INFINITY); OBSERVABLES];
-        Start { state, leg: V::splat(leg), step, peaks }
+        Start { state, leg: V::splat(leg), step, peaks, settled: V::splat(0.0) }
     }
 
     /// Zeros, for lanes that nobody reads.
@@ -46,6 +48,7 @@ impl<V: Lanes, const N: usize> Start<V, N> {
         }
         other.leg = V::select(mask, this.leg, other.leg);
         other.step = V::select(mask, this.step, other.step);
+        other.settled = V::select(mask, this.settled, other.settled);
         other
     }
 }

@@ -301,7 +301,7 @@ pub fn quantile_column(p: &[f64], out: &mut [f64]) {
         signed_tails(&p[..count], &mut tails[..count]);
         of_signed_tails(&tails[..count], out);
         for (out, &p) in out.iter_mut().zip(p) {
-            if out.is_nan() {
+            if out.is_nan() || !(0.0..=1.0).contains(&p) {
                 *out = quantile(p);
             }
         }
@@ -327,6 +327,8 @@ mod tests {
         for (&p, &z) in p.iter().zip(&out) {
             assert_eq!(quantile(p).to_bits(), z.to_bits(), "p = {p}");
         }
+        quantile_column(&[-0.1, 1.2, f64::NAN], &mut out);
+        assert!(out[..3].iter().all(|z| z.is_nan()));
     }
 
     #[test]
