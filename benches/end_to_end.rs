@@ -2,9 +2,9 @@
 //!
 //! A million samples of the default study (or as many as are asked for). On the same cores, in turn, the
 //! fastest of three turns each: the kernel alone over coefficients that were drawn before; drawing; drawing
-//! and integrating. Then `reeldown run` as a user types it, three times as well: what it says of its samples, drawn,
-//! integrated and written as Parquet, and the whole, whose analyses integrate more descents than the samples: its time is held against what the kernel needs
-//! for all of them. Peak memory is the program's own high-water mark.
+//! and integrating. Then `reeldown run` as a user types it, three times as well: what it says of its samples,
+//! drawn, integrated and written as Parquet; and the whole, whose analyses integrate more descents than the
+//! samples: its time is held against what the kernel needs for all of them. Peak memory is the program's own high-water mark.
 
 use rayon::prelude::*;
 use reeldown::campaign::{Ensemble, Looks, Progress, run_until, sampler};

@@ -90,8 +90,8 @@ pub fn sampler(study: &Study) -> Result<Sampler> {
 }
 
 /// Computes samples `range` of the study's main design, row group by row group in order, and hands each
-/// to `sink` in several tables, which may take its time while the next is computed. Returns the index after the last sample
-/// computed: less than `range.end` if `progress` was asked to stop.
+/// to `sink` in several tables, which may take its time while the next is computed. Returns the index after the
+/// last sample computed: less than `range.end` if `progress` was asked to stop.
 ///
 /// # Errors
 /// What [`sampler`] refuses, and whatever `sink` returns.

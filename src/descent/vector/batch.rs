@@ -40,6 +40,7 @@ pub(super) struct Abreast<V> {
 
 /// A batch with what it takes to lay it side by side.
 pub(super) enum Source<'a, V> {
+    /// Coefficients, which are laid side by side as they are.
     Coefficients(&'a [Coefficients<f64>]),
     /// Draws, and the design that they are written into.
     Draws(Draws<'a>, Design<Wide<V>>),

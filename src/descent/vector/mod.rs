@@ -75,6 +75,9 @@ pub fn descend(
 }
 
 /// [`descend`] of draws of a design's parameters.
+///
+/// # Panics
+/// If the draws have fewer columns than targets: a mistake of the caller's.
 pub fn descend_draws(
     model: Model,
     settings: &Settings,
