@@ -35,10 +35,10 @@
 //!
 //! # Where it holds
 //! What is left out is estimated, and a lane goes the long way where that is more than a share of the
-//! tolerance, or the layer is not slight against everything else. Against fine steps from rest (300 members of the default study, 1 500 of a stress set) no
-//! error above 1e-7 was more than its estimate, most were a quarter of it. At a tolerance of 1e-6 most members of
-//! the default study start beyond the layer, at 1e-7 hardly any. Thinning with shear goes the long way
-//! always.
+//! tolerance, or the layer is not slight against everything else. Against fine steps from rest (300 members
+//! of the default study, 1 500 of a stress set) no error above 1e-7 was more than its estimate, most were a
+//! quarter of it. At a tolerance of 1e-6 most members of the default study start beyond the layer, at 1e-7
+//! hardly any. Thinning with shear goes the long way always.
 
 use super::clock::Clock;
 use super::constants::Constants;
