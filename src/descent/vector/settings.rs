@@ -1,6 +1,7 @@
 //! What a caller chooses, and what the kernel counts.
 
 use crate::descent::model::Model;
+use crate::descent::outcome::{OUTCOME_COUNT, OutcomeQuantity};
 
 /// The numerical settings of an ensemble.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,14 +26,62 @@ pub fn default_tolerance() -> f64 {
     1e-6
 }
 
+/// Tightest tolerance that the arithmetic can serve.
+pub(super) const TIGHTEST: f64 = 1e-12;
+
+/// An outcome beyond what is possible by this many tolerances is impossible.
+pub(super) const IMPOSSIBLE_SLACK: f64 = 10.0;
+
 impl Settings {
+    /// The tolerance that is used.
+    fn used(&self) -> f64 {
+        self.tolerance.clamp(TIGHTEST, 1e-3)
+    }
+
+    /// The first attempt at every descent.
+    pub(super) fn attempt(&self) -> Attempt {
+        Attempt { tolerance: self.used(), first_step: None }
+    }
+
+    /// The attempts at a descent that the first left in doubt, each from rest, tighter by ten and with a shorter
+    /// first step than the one before: two that share their first step would share what it misses.
+    pub(super) fn closer(&self) -> impl Iterator<Item = Attempt> {
+        let (mut tolerance, mut share) = (self.used(), 0.1);
+        std::iter::from_fn(move || {
+            (tolerance, share) = (0.1 * tolerance, 0.1 * share);
+            (tolerance >= 0.99 * TIGHTEST).then_some(Attempt { tolerance, first_step: Some(share) })
+        })
+    }
+
+    /// The largest relative error of an outcome that a descent is returned with, whatever the design, as far as
+    /// runs at several tolerances tell: so many times the tolerance (of which nothing below 1e-8 is promised).
+    pub fn promise(&self, outcome: OutcomeQuantity) -> f64 {
+        PROMISED[outcome as usize] * self.used().max(1e-8)
+    }
+}
+
+/// By how many times the tolerance each outcome may err on a hard design, in the order of
+/// [`OutcomeQuantity::ALL`].
+pub(super) const PROMISED: [f64; OUTCOME_COUNT] =
+    [30.0, 100.0, 30.0, 100.0, 100.0, 100.0, 100.0, 30.0, 10.0, 10.0];
+
+/// One attempt at descents.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Attempt {
+    /// Relative error wanted.
+    pub tolerance: f64,
+    /// Where not none: from rest always, with this share of the usual first step.
+    pub first_step: Option<f64>,
+}
+
+impl Attempt {
     /// The bound on a step's weighted error: measured to give the wanted one at the end.
-    pub(super) fn local_tolerance(&self, model: Model) -> f64 {
+    pub fn local_tolerance(&self, model: Model) -> f64 {
         let factor = match model {
             Model::Dynamic => 2.4,
             Model::QuasiSteady => 1.8,
         };
-        factor * self.tolerance.clamp(1e-12, 1e-3)
+        factor * self.tolerance
     }
 }
 
