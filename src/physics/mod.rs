@@ -7,6 +7,7 @@ pub mod balloon;
 pub mod brake;
 pub mod coefficients;
 pub mod design;
+pub mod film;
 pub mod fluid;
 pub mod motion;
 pub mod parameters;

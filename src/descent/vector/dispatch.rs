@@ -1,6 +1,7 @@
 //! Which instruction set runs the kernel.
 
 use super::batch::Batch;
+use super::detailed;
 use super::dynamic::Dynamic;
 use super::quasi_steady::QuasiSteady;
 use super::queue::run;
@@ -66,5 +67,11 @@ fn with_lanes<V: Lanes>(
     match model {
         Model::Dynamic => run::<V, Dynamic<V>, 7>(settings, batch, results),
         Model::QuasiSteady => run::<V, QuasiSteady<V>, 5>(settings, batch, results),
+        Model::DetailedDynamic => {
+            run::<V, detailed::Dynamic<V, 5, 3>, 20>(settings, batch, results)
+        }
+        Model::DetailedQuasiSteady => {
+            run::<V, detailed::QuasiSteady<V, 5, 3>, 18>(settings, batch, results)
+        }
     }
 }

@@ -31,6 +31,7 @@ impl Settings {
         let factor = match model {
             Model::Dynamic => 2.4,
             Model::QuasiSteady => 1.8,
+            Model::DetailedDynamic | Model::DetailedQuasiSteady => 2.0,
         };
         factor * self.tolerance.clamp(1e-12, 1e-3)
     }

@@ -1,6 +1,7 @@
 //! The kernel differentiated: one descent, with the derivatives of its outcomes along several directions.
 
 use super::constants::Constants;
+use super::detailed;
 use super::dynamic::Dynamic;
 use super::group::Group;
 use super::model::Model;
@@ -34,6 +35,12 @@ pub fn differentiate(
     match model {
         Kind::Dynamic => run::<Dynamic<Lane>, 7>(settings, coefficients, plain),
         Kind::QuasiSteady => run::<QuasiSteady<Lane>, 5>(settings, coefficients, plain),
+        Kind::DetailedDynamic => {
+            run::<detailed::Dynamic<Lane, 5, 3>, 20>(settings, coefficients, plain)
+        }
+        Kind::DetailedQuasiSteady => {
+            run::<detailed::QuasiSteady<Lane, 5, 3>, 18>(settings, coefficients, plain)
+        }
     }
 }
 
