@@ -1,10 +1,10 @@
 //! Statements of dependence, and the joint distribution that they make.
 
-use super::card::parameter_path;
 use super::document::{Node, Value};
 use super::place::Place;
 use super::read::{self, Section};
 use super::together::already_dependent;
+use super::values::parameter_path;
 use super::vocabulary::CORRELATION;
 use super::{Correlation, Input};
 use crate::error::{Error, Result};
