@@ -67,6 +67,12 @@ fn with_lanes<V: Lanes>(
     match model {
         Model::Dynamic => run::<V, Dynamic<V>, 7>(settings, batch, results),
         Model::QuasiSteady => run::<V, QuasiSteady<V>, 5>(settings, batch, results),
+        Model::DetailedDynamic if settings.fine_space() => {
+            run::<V, detailed::Dynamic<V, 7, 4>, 33>(settings, batch, results)
+        }
+        Model::DetailedQuasiSteady if settings.fine_space() => {
+            run::<V, detailed::QuasiSteady<V, 7, 4>, 31>(settings, batch, results)
+        }
         Model::DetailedDynamic => {
             run::<V, detailed::Dynamic<V, 5, 3>, 20>(settings, batch, results)
         }

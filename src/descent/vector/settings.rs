@@ -25,7 +25,16 @@ pub fn default_tolerance() -> f64 {
     1e-6
 }
 
+/// The detailed models resolve time, final velocity and hottest fluid to 1e-4 with five points along the radius and across
+/// the film, and to some 3e-6, the best that they promise, with seven.
+const COARSEST_FINE: f64 = 5e-5;
+
 impl Settings {
+    /// Whether a detailed model takes its finer points.
+    pub(super) fn fine_space(&self) -> bool {
+        self.tolerance < COARSEST_FINE
+    }
+
     /// The bound on a step's weighted error: measured to give the wanted one at the end.
     pub(super) fn local_tolerance(&self, model: Model) -> f64 {
         let factor = match model {

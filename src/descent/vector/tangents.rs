@@ -35,6 +35,12 @@ pub fn differentiate(
     match model {
         Kind::Dynamic => run::<Dynamic<Lane>, 7>(settings, coefficients, plain),
         Kind::QuasiSteady => run::<QuasiSteady<Lane>, 5>(settings, coefficients, plain),
+        Kind::DetailedDynamic if settings.fine_space() => {
+            run::<detailed::Dynamic<Lane, 7, 4>, 33>(settings, coefficients, plain)
+        }
+        Kind::DetailedQuasiSteady if settings.fine_space() => {
+            run::<detailed::QuasiSteady<Lane, 7, 4>, 31>(settings, coefficients, plain)
+        }
         Kind::DetailedDynamic => {
             run::<detailed::Dynamic<Lane, 5, 3>, 20>(settings, coefficients, plain)
         }

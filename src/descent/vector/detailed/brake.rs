@@ -245,8 +245,8 @@ impl<V: Lanes, const P: usize, const K: usize, const N: usize> Moment<V, P, K, N
     }
 }
 
-macro_rules! model {
-    ($P:literal, $K:literal, $across:literal, $dynamic:literal, $steady:literal) => {
+macro_rules! points {
+    ($P:literal, $K:literal, $across:literal) => {
         impl<V: Lanes> Fresh<V> for Detailed<V, $P, $K> {
             fn fresh(constants: Constants<V>, clock: Clock<V>) -> Self {
                 let space = Space::<$P, $K>::new::<$across>();
@@ -255,8 +255,8 @@ macro_rules! model {
         }
     };
 }
-model!(5, 3, 5, 20, 18);
-model!(7, 4, 7, 33, 31);
+points!(5, 3, 5);
+points!(7, 4, 7);
 
 /// A model with its points laid out.
 pub trait Fresh<V> {
