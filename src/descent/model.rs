@@ -19,6 +19,9 @@ impl Model {
     pub const ALL: [Model; 4] =
         [Model::Dynamic, Model::QuasiSteady, Model::DetailedDynamic, Model::DetailedQuasiSteady];
 
+    /// Those with the heat in three nodes.
+    pub const THREE_NODES: [Model; 2] = [Model::Dynamic, Model::QuasiSteady];
+
     /// The name in study files.
     pub fn name(self) -> &'static str {
         match self {

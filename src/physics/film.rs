@@ -28,16 +28,10 @@
 
 use super::design::Design;
 use super::parameters::Parameter;
+use super::space::{DENSITY_TEMPERATURE_K, PI, SMALLEST_BORE, Space};
 use super::thermal::Thermal;
-use crate::numerics::gauss_lobatto::GaussLobatto;
 use crate::numerics::real::Real;
 use std::array::from_fn;
-
-/// Temperature at which the fluid has its nominal density, K: 25 °C.
-pub const DENSITY_TEMPERATURE_K: f64 = 298.15;
-
-/// The smallest inner radius as a share of the outer one: an axis has no area, and its equation would be empty.
-const SMALLEST_BORE: f64 = 1e-3;
 
 /// The film and the metal of one design.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,12 +60,13 @@ impl<R: Real> Film<R> {
         // The larger of the bore and its smallest: −min(−a, −b).
         let inner = -(-get(Parameter::BrakeInnerRadius)).min(-(R::constant(SMALLEST_BORE) * outer));
         let half_width = half * (outer - inner);
-        let mut inverse_gaps = R::constant(0.0);
+        let (mut inverse_gaps, mut count) = (R::constant(0.0), R::constant(0.0));
         for &gap in design.gaps() {
             inverse_gaps = inverse_gaps + one / gap;
+            count = count + one;
         }
-        let inverse_gap = inverse_gaps / R::constant(design.surfaces() as f64);
-        let area = R::constant(std::f64::consts::PI) * (outer * outer - inner * inner);
+        let inverse_gap = inverse_gaps / count;
+        let area = R::constant(PI) * (outer * outer - inner * inner);
         let thickness =
             get(Parameter::FluidShearFactor) * get(Parameter::FluidViscosityCoefficient);
         Film {
@@ -86,68 +81,6 @@ impl<R: Real> Film<R> {
             spreading_per_s: get(Parameter::MetalConductivity)
                 / (get(Parameter::MetalHeatCapacity) * half_width * half_width),
             expansion_per_k: get(Parameter::FluidExpansion),
-        }
-    }
-}
-
-/// Points along the radius and across the film, and what the equations need of them: pure numbers.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Space<const P: usize, const K: usize> {
-    /// Points along the radius, from −1 at the bore to 1 at the rim.
-    pub radial: [f64; P],
-    /// Their weights, whose sum is 2.
-    pub radial_weights: [f64; P],
-    /// `Σ_q w_q D_qi D_qk`: radial stiffness of a strip.
-    pub strip: [[f64; P]; P],
-    /// `Σ_q w_q x_q D_qi D_qk`: its part that grows with the radius.
-    pub flare: [[f64; P]; P],
-    /// Shares of the film's volume at a radius: both walls together, …, the middle.
-    pub share: [f64; K],
-    /// Conduction across the film: `−rate Σ_b across[a][b] T_b` warms unknown `a`.
-    pub across: [[f64; K]; K],
-}
-
-impl<const P: usize, const K: usize> Space<P, K> {
-    /// `P` points along the radius and `N = 2K − 1` across the film.
-    pub fn new<const N: usize>() -> Self {
-        const { assert!(N + 1 == 2 * K, "an odd number of points across the film: both halves are one") };
-        let radial = GaussLobatto::<P>::new();
-        let stiffness = |along: &dyn Fn(f64) -> f64| {
-            from_fn(|i| {
-                from_fn(|k| {
-                    (0..P)
-                        .map(|q| {
-                            let slopes = radial.derivative[q][i] * radial.derivative[q][k];
-                            radial.weights[q] * along(radial.points[q]) * slopes
-                        })
-                        .sum()
-                })
-            })
-        };
-        let film = GaussLobatto::<N>::new();
-        // Both halves of the film carry the same temperatures: their rows and columns are added.
-        let folded = |node: usize| node.min(N - 1 - node);
-        let mut share = [0.0; K];
-        let mut across = [[0.0; K]; K];
-        for j in 0..N {
-            share[folded(j)] += 0.5 * film.weights[j];
-            for l in 0..N {
-                let stiffness: f64 = (0..N)
-                    .map(|q| film.weights[q] * film.derivative[q][j] * film.derivative[q][l])
-                    .sum();
-                across[folded(j)][folded(l)] += 0.5 * stiffness;
-            }
-        }
-        for (row, share) in across.iter_mut().zip(share) {
-            row.iter_mut().for_each(|entry| *entry /= share);
-        }
-        Space {
-            radial: radial.points,
-            radial_weights: radial.weights,
-            strip: stiffness(&|_| 1.0),
-            flare: stiffness(&|x| x),
-            share,
-            across,
         }
     }
 }
@@ -353,8 +286,8 @@ impl<R: Real> Paths<R> {
     /// Shares of film and metal in what moves with the wall, `C1 s0/(C2 + C1 s0)` and `C2/(C2 + C1 s0)`, where `s0` is the walls'
     /// share of the film's volume.
     #[inline(always)]
-    pub fn wall_shares(&self, share: f64) -> (R, R) {
-        let film = R::constant(share) * self.capacity_ratio;
+    pub fn wall_shares(&self, share: R) -> (R, R) {
+        let film = share * self.capacity_ratio;
         let metal = R::constant(1.0) / (R::constant(1.0) + film);
         (film * metal, metal)
     }
@@ -377,7 +310,7 @@ pub fn heating<R: Real, const P: usize, const K: usize>(
     (field, housing_k): (&Field<R, P, K>, R),
 ) -> Heating<R, P, K> {
     let zero = R::constant(0.0);
-    let (wall_film, wall_metal) = paths.wall_shares(space.share[0]);
+    let (wall_film, wall_metal) = paths.wall_shares(R::constant(space.share[0]));
     let mut means = [zero; P];
     for i in 0..P {
         means[i] = R::constant(space.share[0]) * field[i][0];
@@ -444,7 +377,16 @@ impl<R: Real, const P: usize> Faces<R, P> {
     }
 }
 
-/// Reel speed at which `k ω^q S(ω)` is `k` times `target`, rad/s: a torque for `q` = 1, a power for `q` = 2.
+/// What a reel speed is sought for, over the torque per reel speed `k` of an infinitely hot fluid.
+#[derive(Debug, Clone, Copy)]
+pub enum Demand<R> {
+    /// A torque: `ω S(ω)`, rad/s.
+    Torque(R),
+    /// A power: `ω² S(ω)`, rad²/s².
+    Power(R),
+}
+
+/// Reel speed at which `ω^q S(ω)` is what is demanded, rad/s: `q` = 1 for a torque, 2 for a power.
 ///
 /// Newton's method on `q ln ω + ln S(ω) = ln(target)`, which is increasing and concave in `ln ω`, from the larger of its
 /// two asymptotes, both of which lie left of the root.
@@ -453,17 +395,22 @@ pub fn speed_of<R: Real, const P: usize>(
     film: &Film<R>,
     faces: &Faces<R, P>,
     thickening: &[R; P],
-    (target, power_order): (R, f64),
+    demand: Demand<R>,
     cross: Option<R>,
 ) -> R {
-    let (zero, one, order) = (R::constant(0.0), R::constant(1.0), R::constant(power_order));
+    let (zero, one) = (R::constant(0.0), R::constant(1.0));
+    let (target, order) = match demand {
+        Demand::Torque(torque) => (torque, one),
+        Demand::Power(power) => (power, R::constant(2.0)),
+    };
     let mut newtonian = zero;
     for i in 0..P {
         newtonian = faces.torque[i].mul_add(thickening[i], newtonian);
     }
-    // A root only where it is one.
-    let thin = target / newtonian;
-    let thin = if power_order > 1.0 { thin.sqrt() } else { thin };
+    let thin = match demand {
+        Demand::Torque(torque) => torque / newtonian,
+        Demand::Power(power) => (power / newtonian).sqrt(),
+    };
     let Some(power) = cross else {
         return thin;
     };
@@ -495,181 +442,5 @@ pub fn speed_of<R: Real, const P: usize>(
 const SPEED_STEPS: usize = 8;
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const RADIAL: usize = 9;
-    const HALF: usize = 9;
-
-    /// A film of which everything can be chosen: faces from 3 to 8.5 in, no heat to the housing.
-    struct Case<const P: usize, const K: usize> {
-        film: Film<f64>,
-        space: Space<P, K>,
-        paths: Paths<f64>,
-        viscosity_temperature_k: f64,
-    }
-
-    impl<const P: usize, const K: usize> Case<P, K> {
-        fn new(space: Space<P, K>, viscosity_temperature_k: f64, expansion_per_k: f64) -> Self {
-            let mut design = Design::baseline();
-            design.set(super::super::Target::whole(Parameter::FluidExpansion), expansion_per_k);
-            let film = Film::new(&design);
-            let mut paths = Paths::new(&Thermal::new(&design));
-            (paths.fluid_housing_1, paths.rotor_housing_2) = (0.0, 0.0);
-            Case { film, space, paths, viscosity_temperature_k }
-        }
-
-        fn heating(&self, field: &Field<f64, P, K>, speed: f64, drive: f64) -> Heating<f64, P, K> {
-            let faces = Faces::new(&self.film, &self.space);
-            let b = self.viscosity_temperature_k;
-            let resistance = Resistance::new(&self.film, &self.space, b, field);
-            let shear = Shear::new(&self.film, &faces, &resistance.thickening, speed, None);
-            let (film, space) = (&self.film, &self.space);
-            heating(film, &self.paths, space, &faces, &resistance, &shear, drive, (field, 300.0))
-        }
-    }
-
-    /// Points across half a film, from the wall (−1) to the middle (0).
-    fn across<const N: usize, const K: usize>() -> [f64; K] {
-        let rule = GaussLobatto::<N>::new();
-        from_fn(|a| rule.points[a])
-    }
-
-    /// A uniformly heated film is a parabola whose mean excess over its walls is q d²/12k.
-    #[test]
-    fn analytic_uniformly_heated_film() {
-        let case = Case::<5, 3>::new(Space::new::<5>(), 0.0, 0.0);
-        let points = across::<5, 3>();
-        // Excess (1 − x²) on the reference interval: conduction 2 × the rate, everywhere inside.
-        let field: Field<f64, 5, 3> = [points.map(|x| 300.0 + 12.0 * (1.0 - x * x)); 5];
-        let rates = case.heating(&field, 0.0, 0.0).field;
-        for row in rates {
-            for rate in &row[1..] {
-                let want = -24.0 * case.film.conduction_per_s;
-                assert!((rate / want - 1.0).abs() < 1e-12, "{rate} {want}");
-            }
-        }
-        let mean: f64 = case.space.share.iter().zip(field[0]).map(|(s, t)| s * t).sum();
-        // Mean of 1 − x² is 2/3; with q = 24 k per interval of half-width one, q d²/12 k = 24 · 4/12 k/k = 8.
-        assert!((mean - 308.0).abs() < 1e-12, "{mean}");
-    }
-
-    /// Nahme and Griffith: plane Couette flow, viscosity exp(−β T), walls at one temperature. With a = Na/8 the excess is
-    /// β (T − T_w) = ln((1 + a)/cosh²(c x)), c = asinh √a, and the stress asinh(√a)/√(a (1 + a)) of the cold film's.
-    #[test]
-    fn analytic_nahme_griffith_film() {
-        for (nahme, stress) in [(2.0, 0.860_817_88), (10.0, 0.573_878_59)] {
-            let beta = 0.02;
-            // The law without B is the exponential one.
-            let case = Case::<RADIAL, HALF>::new(Space::new::<17>(), 0.0, beta);
-            let a: f64 = nahme / 8.0;
-            let c = a.sqrt().asinh();
-            let exact = c / (a * (1.0 + a)).sqrt();
-            assert!((exact - stress).abs() < 5e-9, "{exact}");
-            let points = across::<17, HALF>();
-            let row = points.map(|x| 350.0 + ((1.0 + a) / (c * x).cosh().powi(2)).ln() / beta);
-            let field: Field<f64, RADIAL, HALF> = [row; RADIAL];
-            let faces = Faces::new(&case.film, &case.space);
-            let resistance = Resistance::new(&case.film, &case.space, 0.0, &field);
-            // Stress over that of a film at the walls' temperature.
-            let got = resistance.thickening[0] * resistance.fluidity[0][0];
-            assert!((got / exact - 1.0).abs() < 1e-9, "{got} {exact}");
-            // Na = β μ_w U²/k per film is the heating of a cold film, 4 conduction Na/β on the reference interval.
-            for i in 0..RADIAL {
-                let rim = faces.radius_m[i] * faces.radius_m[i] * faces.heating_per_m2;
-                let cold = nahme / beta * case.film.conduction_per_s / 4.0;
-                let drive = cold * resistance.fluidity[i][0] / rim;
-                let rates = case.heating(&field, 1.0, drive).field;
-                for rate in &rates[i][1..] {
-                    assert!(rate.abs() < 1e-7 * cold, "{nahme} {i}: {rate} of {cold}");
-                }
-            }
-        }
-    }
-
-    /// Heat put in as Q r² with insulated edges leaves the steady shape −[r⁴/16 − m r²/4 + C ln r],
-    /// m = (ro² + ri²)/2, C = −ri⁴/4 + m ri²/2, on which conduction is m − r².
-    #[test]
-    fn analytic_radial_conduction() {
-        let case = Case::<13, 3>::new(Space::new::<5>(), 0.0, 0.0);
-        let faces = Faces::new(&case.film, &case.space);
-        let (ri, ro) = (faces.radius_m[0], faces.radius_m[12]);
-        let m = (ro * ro + ri * ri) / 2.0;
-        let c = -(ri * ri * ri * ri) / 4.0 + m * ri * ri / 2.0;
-        let shape = |r: f64| -((r * r * r * r) / 16.0 - m * r * r / 4.0 + c * r.ln());
-        let walls = faces.radius_m.map(shape);
-        let kappa = case.film.spreading_per_s * case.film.half_width_m * case.film.half_width_m;
-        for i in 0..13 {
-            let got = spreading(&case.film, &case.space, &faces, i, &walls) / kappa;
-            let r = faces.radius_m[i];
-            assert!((got - (m - r * r)).abs() < 2e-6 * m, "{r}: {got} {}", m - r * r);
-        }
-    }
-
-    /// The slowest radial mode decays as J0(kr) Y1(k ri) − Y0(kr) J1(k ri) with J1(k ro) Y1(k ri) = J1(k ri) Y1(k ro).
-    /// SciPy (`jv`, `yv`, `brentq`) for ri/ro = 3/8.5: k ro = 5.037162919637.
-    #[test]
-    fn reference_bessel_mode_of_radial_conduction() {
-        let case = Case::<9, 3>::new(Space::new::<5>(), 0.0, 0.0);
-        let faces = Faces::new(&case.film, &case.space);
-        let kappa = case.film.spreading_per_s * case.film.half_width_m * case.film.half_width_m;
-        // Inverse iteration would need a solver; power iteration of exp(−t A) finds the slowest mode beside the constant.
-        let mut mode: [f64; 9] = from_fn(|i| case.space.radial[i]);
-        let mut decay = 0.0;
-        let step = 2e-7 / kappa;
-        for _ in 0..60_000 {
-            let mean = faces.mean(&mode);
-            mode.iter_mut().for_each(|value| *value -= mean);
-            let size = faces.mean(&mode.map(|value| value * value)).sqrt();
-            mode.iter_mut().for_each(|value| *value /= size);
-            let rates: [f64; 9] = from_fn(|i| spreading(&case.film, &case.space, &faces, i, &mode));
-            decay = -faces.mean(&from_fn(|i| rates[i] * mode[i])) / kappa;
-            for (value, rate) in mode.iter_mut().zip(rates) {
-                *value += step * rate;
-            }
-        }
-        let k = decay.sqrt() * faces.radius_m[8];
-        assert!((k - BESSEL_ROOT).abs() < 1e-8, "{k}");
-    }
-    const BESSEL_ROOT: f64 = 5.037_162_919_637;
-
-    /// What shear puts in is what all temperatures take up, but for the air: to rounding, at any field.
-    #[test]
-    fn property_energy_is_kept_to_rounding() {
-        let design = Design::baseline();
-        let thermal = Thermal::new(&design);
-        let film = Film::new(&design);
-        let space = Space::<7, 4>::new::<7>();
-        let paths = Paths::new(&thermal);
-        let faces = Faces::new(&film, &space);
-        let fluid = super::super::fluid::Fluid::new(
-            &design,
-            &super::super::brake::Brake::new(&design),
-            false,
-        );
-        let field: Field<f64, 7, 4> = from_fn(|i| {
-            from_fn(|a| 330.0 + 7.0 * (i as f64) + 11.0 * ((i * 3 + a * 5) % 4) as f64)
-        });
-        let resistance = Resistance::new(&film, &space, fluid.viscosity_temperature_k, &field);
-        for cross in [None, Some(0.7)] {
-            let mut film = film;
-            film.cross_time_s_per_m = 2e-3;
-            let speed = 3.3;
-            let shear = Shear::new(&film, &faces, &resistance.thickening, speed, cross);
-            let factor = fluid.torque_per_speed_nms;
-            let drive = factor * speed * speed / thermal.fluid_capacity_j_per_k;
-            let rates =
-                heating(&film, &paths, &space, &faces, &resistance, &shear, drive, (&field, 310.0));
-            let power = factor * shear.stiffness * speed * speed;
-            let mut taken = thermal.housing_capacity_j_per_k * rates.housing;
-            for i in 0..7 {
-                let row = &rates.field[i];
-                let across: f64 = (0..4).map(|a| space.share[a] * row[a]).sum();
-                taken += faces.area[i]
-                    * (thermal.fluid_capacity_j_per_k * across
-                        + thermal.rotor_capacity_j_per_k * row[0]);
-            }
-            assert!((taken / power - 1.0).abs() < 1e-12, "{taken} {power}");
-        }
-    }
-}
+#[path = "film_test.rs"]
+mod tests;

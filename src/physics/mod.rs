@@ -14,6 +14,7 @@ pub mod parameters;
 pub mod payload;
 pub mod quasi_steady;
 pub mod reel;
+pub mod space;
 pub mod thermal;
 
 pub use coefficients::{Coefficients, FIELD_COUNT};

@@ -175,7 +175,7 @@ table! {
         2000.0, true, "temperature of fluid, rotors and housing at release", "paper";
     FluidConductivity, "fluid.conductivity", "k_f", Conductivity, 0.16, "0.16 W/m/K", 0.0, INF,
         true, "thermal conductivity of the fluid (detailed models)", "dimethyl silicone data";
-    FluidExpansion, "fluid.expansion", "α", Expansion, 0.0, "0 1/K", 0.0, 0.1, false,
+    FluidExpansion, "fluid.expansion", "α", Expansion, 0.0, "0 %/K", 0.0, 0.1, false,
         "thermal expansion of the fluid, which thins it beyond the viscosity law (detailed models)",
         "paper: neglected";
     MetalConductivity, "metal.conductivity", "k_m", Conductivity, 45.0, "45 W/m/K", 0.0, INF, true,

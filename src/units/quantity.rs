@@ -169,7 +169,7 @@ impl Quantity {
             Quantity::Conductance => "680 W/K",
             Quantity::Conductivity => "0.16 W/m/K",
             Quantity::VolumetricHeatCapacity => "3.6 MJ/m³/K",
-            Quantity::Expansion => "9.5e-4 1/K",
+            Quantity::Expansion => "0.095 %/K",
         }
     }
 }

@@ -78,24 +78,28 @@ fn reference_independent_galerkin_of_the_baseline() {
     }
 }
 
-/// A film and a metal that conduct without resistance are one node: three nodes with K12 without end.
+/// The better film and metal conduct, the nearer the detailed model is to three nodes whose K12 is what a uniformly heated
+/// film has, 12 k_f A 2n/d: what is left falls with the conductivities.
 #[test]
 fn analytic_three_nodes_in_the_limit_of_perfect_conduction() {
-    let mut detailed = Design::baseline();
-    detailed.set(Target::whole(Parameter::FluidConductivity), 0.16e5);
-    detailed.set(Target::whole(Parameter::MetalConductivity), 45e6);
-    let mut nodes = Design::baseline();
-    nodes.set(Target::whole(Parameter::ThermalFluidRotorConductance), 1e8);
+    let off = |factor: f64, one: Model, other: Model| {
+        let mut detailed = Design::baseline();
+        detailed.set(Target::whole(Parameter::FluidConductivity), 0.16 * factor);
+        detailed.set(Target::whole(Parameter::MetalConductivity), 45.0 * factor);
+        let c = Coefficients::new(&detailed);
+        let mut nodes = Design::baseline();
+        let film = 3.0 * c.film.conduction_per_s * c.thermal.fluid_capacity_j_per_k;
+        nodes.set(Target::whole(Parameter::ThermalFluidRotorConductance), film);
+        let got = reference::descend(&c, one, 1e-8).unwrap();
+        let want = reference::descend(&Coefficients::new(&nodes), other, 1e-8).unwrap();
+        (got.get(OutcomeQuantity::Time) / want.get(OutcomeQuantity::Time) - 1.0).abs()
+    };
     for (one, other) in
         [(Model::DetailedDynamic, Model::Dynamic), (Model::DetailedQuasiSteady, Model::QuasiSteady)]
     {
-        let got = reference::descend(&Coefficients::new(&detailed), one, 1e-8).unwrap();
-        let want = reference::descend(&Coefficients::new(&nodes), other, 1e-8).unwrap();
-        for quantity in OutcomeQuantity::ALL {
-            let error = (got.get(quantity) / want.get(quantity) - 1.0).abs();
-            // What resistance is left, 1e-5 of the film's 27 K, is 1e-6 of a temperature.
-            assert!(error < 5e-6, "{} {}: {error:e}", one.name(), quantity.name());
-        }
+        let (before, after) = (off(100.0, one, other), off(1000.0, one, other));
+        assert!(after < 1e-4, "{}: {after:e}", one.name());
+        assert!((8.0..12.0).contains(&(before / after)), "{}: {before:e} {after:e}", one.name());
     }
 }
 
@@ -141,7 +145,7 @@ fn property_the_tolerance_holds_against_the_plain_integrator() {
         for (tolerance, allowed) in [(1e-4, 1e-4), (1e-5, 2e-5)] {
             let got = run(InstructionSet::best(), model, tolerance, &batch);
             let mut worst = 0.0f64;
-            for (c, got) in batch.iter().zip(&got) {
+            for (k, (c, got)) in batch.iter().zip(&got).enumerate() {
                 let want = reference::descend(c, model, 1e-7).unwrap();
                 let got = got.expect("an ordinary descent");
                 for quantity in [
@@ -149,7 +153,15 @@ fn property_the_tolerance_holds_against_the_plain_integrator() {
                     OutcomeQuantity::FinalVelocity,
                     OutcomeQuantity::PeakFluidTemperature,
                 ] {
-                    worst = worst.max((got.get(quantity) / want.get(quantity) - 1.0).abs());
+                    let error = (got.get(quantity) / want.get(quantity) - 1.0).abs();
+                    if error > worst {
+                        println!(
+                            "{} {tolerance:e} {k} {}: {error:.1e}",
+                            model.name(),
+                            quantity.name()
+                        );
+                    }
+                    worst = worst.max(error);
                 }
             }
             assert!(worst < allowed, "{} at {tolerance:e}: {worst:e}", model.name());

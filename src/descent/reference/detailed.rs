@@ -8,9 +8,10 @@ use super::systems::{LINE_FLOOR, ReelDown, TEMPERATURE_FLOOR, VELOCITY_FLOOR, al
 use crate::numerics::dual::Dual;
 use crate::numerics::real::Real;
 use crate::physics::Coefficients;
-use crate::physics::film::{self, Faces, Field, Paths, Resistance, Shear, Space};
+use crate::physics::film::{self, Demand, Faces, Field, Paths, Resistance, Shear};
 use crate::physics::motion::{Forces, Moment, Observation};
 use crate::physics::quasi_steady::Pull;
+use crate::physics::space::Space;
 
 /// The detailed dynamic model of one descent: `N = P K + 4` states.
 #[derive(Debug, Clone)]
@@ -76,17 +77,16 @@ impl<const P: usize, const K: usize, const N: usize> QuasiSteady<P, K, N> {
         let (field, faces, resistance) = brake(c, &self.space, &state[1..]);
         let radius = c.reel.radius_squared_m2(line).sqrt();
         let factor = c.fluid.torque_per_speed_nms;
-        let solve = |target: R, order: f64| {
-            let target = (target / factor, order);
-            film::speed_of(&c.film, &faces, &resistance.thickening, target, cross(c))
-        };
+        let solve =
+            |demand| film::speed_of(&c.film, &faces, &resistance.thickening, demand, cross(c));
         let speed = match self.pull {
             Pull::Payload => {
-                solve((c.payload.weight_n - c.payload.extracted_n(line)) * radius, 1.0)
+                let load = c.payload.weight_n - c.payload.extracted_n(line);
+                solve(Demand::Torque(load * radius / factor))
             }
-            Pull::Force(force) => solve(R::constant(force) * radius, 1.0),
+            Pull::Force(force) => solve(Demand::Torque(R::constant(force) * radius / factor)),
             Pull::Speed(velocity) => R::constant(velocity) / radius,
-            Pull::Power(power) => solve(R::constant(power), 2.0),
+            Pull::Power(power) => solve(Demand::Power(R::constant(power) / factor)),
         };
         let shear = Shear::new(&c.film, &faces, &resistance.thickening, speed, cross(c));
         let torque = factor * shear.stiffness * speed;

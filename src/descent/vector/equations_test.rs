@@ -3,7 +3,9 @@
 
 use super::clock::Clock;
 use super::constants::Constants;
+use super::detailed;
 use super::dynamic::Dynamic;
+use super::model::Model;
 use super::quasi_steady::QuasiSteady;
 use super::rosenbrock::System;
 use crate::physics::quasi_steady::Pull;
@@ -206,33 +208,44 @@ fn analytic_observable_rates_follow_the_flow() {
     }
 }
 
-/// The detailed models' eliminated solves, at fields that no run has, with and without thinning.
+/// [`residual`] of a detailed model at fields that no run has.
+fn detailed_residual<M: Model<f64, N>, const N: usize>(
+    thinning: bool,
+    clock: Clock<f64>,
+    motion: &[f64],
+) -> f64 {
+    let mut system = M::new(Constants::new(&coefficients(thinning)));
+    system.set_any_cross(thinning);
+    system.set_clock(clock);
+    let mut y = [50.0; N];
+    y[..motion.len()].copy_from_slice(motion);
+    for (k, temperature) in y[motion.len()..N - 1].iter_mut().enumerate() {
+        *temperature = 320.0 + 4.0 * k as f64 + 9.0 * ((7 * k) % 5) as f64;
+    }
+    residual(&system, &y, &[1.0; N])
+}
+
 #[test]
 fn analytic_the_detailed_solves_invert_their_jacobians() {
-    use super::detailed;
-    use super::model::Model;
     for thinning in [false, true] {
         for clock in CLOCKS {
-            let constants = Constants::new(&coefficients(thinning));
-            let mut system = detailed::Dynamic::<f64, 5, 3>::new(constants);
-            system.set_any_cross(thinning);
-            system.set_clock(clock);
-            let mut steady = detailed::QuasiSteady::<f64, 5, 3>::new(constants);
-            steady.set_any_cross(thinning);
-            steady.set_clock(clock);
             for (line, v) in [(0.0, 0.4), (60.0, 0.9), (150.0, 0.3)] {
-                let mut y = [0.0; 20];
-                (y[0], y[1], y[2], y[18], y[19]) = (line, 4.7, v, 305.0, 50.0);
-                let mut x = [0.0; 18];
-                (x[0], x[16], x[17]) = (line, 305.0, 50.0);
-                for k in 0..15 {
-                    y[3 + k] = 320.0 + 4.0 * k as f64 + 9.0 * ((7 * k) % 5) as f64;
-                    x[1 + k] = y[3 + k];
-                }
-                let off = residual(&system, &y, &[1.0; 20]);
-                assert!(off < 2e-5, "dynamic, thinning {thinning}, {line}: {off}");
-                let off = residual(&steady, &x, &[1.0; 18]);
-                assert!(off < 2e-5, "quasi-steady, thinning {thinning}, {line}: {off}");
+                let motion = [line, 4.7, v];
+                let off = [
+                    detailed_residual::<detailed::Dynamic<f64, 5, 3>, 20>(thinning, clock, &motion),
+                    detailed_residual::<detailed::Dynamic<f64, 7, 4>, 33>(thinning, clock, &motion),
+                    detailed_residual::<detailed::QuasiSteady<f64, 5, 3>, 18>(
+                        thinning,
+                        clock,
+                        &motion[..1],
+                    ),
+                    detailed_residual::<detailed::QuasiSteady<f64, 7, 4>, 31>(
+                        thinning,
+                        clock,
+                        &motion[..1],
+                    ),
+                ];
+                assert!(off.iter().all(|&off| off < 2e-5), "thinning {thinning}, {line}: {off:?}");
             }
         }
     }

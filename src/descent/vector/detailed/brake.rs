@@ -3,7 +3,8 @@
 use crate::descent::vector::clock::Clock;
 use crate::descent::vector::constants::Constants;
 use crate::numerics::lanes::{Lanes, Wide};
-use crate::physics::film::{self, Faces, Field, Film, Paths, Resistance, Shear, Space};
+use crate::physics::film::{self, Faces, Field, Film, Paths, Resistance, Shear};
+use crate::physics::space::Space;
 
 /// What both detailed models are made of.
 pub struct Detailed<V, const P: usize, const K: usize> {

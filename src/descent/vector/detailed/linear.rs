@@ -11,7 +11,7 @@
 //! `Λ⁻¹ h1`, `Λ⁻¹ h2` and the one of `u_v` are worked out once a step, and leave a 3 × 3 system in `y1, y2, u_v`.
 
 use super::brake::{Detailed, Moment, field_of};
-use crate::numerics::lanes::Lanes;
+use crate::numerics::lanes::{Lanes, Wide};
 use crate::physics::film::Field;
 
 /// What a step's solves share.
@@ -161,7 +161,7 @@ impl<V: Lanes, const P: usize, const K: usize> Detailed<V, P, K> {
         let (zero, one) = (V::splat(0.0), V::splat(1.0));
         let (film, paths, space) = (self.film(), self.paths(), &self.space);
         let heat = &m.heat;
-        let (wall_film, wall_metal) = paths.wall_shares(space.share[0]);
+        let (wall_film, wall_metal) = paths.wall_shares(Wide(V::splat(space.share[0])));
         let (wall_film, wall_metal) = (wall_film.0, wall_metal.0);
         let alpha = self.clock.length;
         let two = V::splat(2.0);

@@ -35,7 +35,7 @@ impl<V: Lanes, const P: usize, const K: usize, const N: usize> System<V, N>
         let load = k.extraction.neg_mul_add(l, k.weight);
         let field = field_of(y, 1);
         let heat = self.0.heat(&field, y[N - 2], |brake, faces, thickening| {
-            let target = (Wide((load * radius) * k.inverse_torque), 1.0);
+            let target = film::Demand::Torque(Wide((load * radius) * k.inverse_torque));
             let film = brake.film();
             let newtonian = film::speed_of(&film, faces, thickening, target, None).0;
             if !brake.any_cross {
