@@ -94,6 +94,8 @@ impl From<Refusal> for Error {
 
 /// Pivots of the Cholesky factor below this count as zero: the inputs are then functions of each other.
 const LEAST_PIVOT: f64 = 1e-10;
+/// The normal correlation that leaves the least pivot.
+const NEAREST_TO_ONE: f64 = 0.999_999_999_9;
 
 /// The Gaussian copula of a number of inputs.
 #[derive(Debug, Clone, PartialEq)]
@@ -143,6 +145,17 @@ impl Copula {
                 (other.first, other.second) == (first, second)
                     || (other.first, other.second) == (second, first)
             };
+            // Alone the pair leaves 1 − ρ² of the second's variance: below the least pivot they are one input.
+            let rho = measure.normal_correlation();
+            if (1.0 - rho) * (1.0 + rho) <= LEAST_PIVOT {
+                return Err(refuse(format!(
+                    "the {} correlation {value} of inputs {} and {} makes them one input to the tenth digit: \
+                     expected at most {NEAREST_TO_ONE} in size, or a single input",
+                    measure.name(),
+                    first + 1,
+                    second + 1
+                )));
+            }
             if statements.iter().take(k).any(stated) {
                 return Err(refuse(format!(
                     "the correlation of inputs {} and {} is stated twice",
@@ -150,7 +163,6 @@ impl Copula {
                     second + 1
                 )));
             }
-            let rho = measure.normal_correlation();
             correlation[(first, second)] = rho;
             correlation[(second, first)] = rho;
         }
