@@ -74,6 +74,8 @@ pub struct Refusal {
     pub pair: (usize, usize),
     /// The values, in the statement's own measure, that all the other statements would allow.
     pub admissible: Option<(f64, f64)>,
+    /// Whether the statement is refused for itself, not beside the others.
+    pub alone: bool,
     /// What is wrong, in one sentence, the inputs named by their numbers from 1.
     pub reason: String,
 }
@@ -95,7 +97,7 @@ impl From<Refusal> for Error {
 /// Pivots of the Cholesky factor below this count as zero: the inputs are then functions of each other.
 const LEAST_PIVOT: f64 = 1e-10;
 /// The normal correlation that leaves the least pivot.
-const NEAREST_TO_ONE: f64 = 0.999_999_999_9;
+pub const NEAREST_TO_ONE: f64 = 0.999_999_999_9;
 
 /// The Gaussian copula of a number of inputs.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,6 +123,7 @@ impl Copula {
                 statement: k,
                 pair: (first, second),
                 admissible: None,
+                alone: true,
                 reason,
             };
             if first >= dimension || second >= dimension {
@@ -266,6 +269,7 @@ fn contradiction(matrix: &DMatrix<f64>, statements: &[Statement]) -> Refusal {
             statement: k,
             pair: (statement.first, statement.second),
             admissible: Some((low, high)),
+            alone: false,
             reason: format!(
                 "the {} correlation {} of inputs {} and {} contradicts the other statements (the matrix is \
                  not positive definite): they leave it only the values between {low:.4} and {high:.4}",
@@ -291,6 +295,7 @@ fn contradiction(matrix: &DMatrix<f64>, statements: &[Statement]) -> Refusal {
         statement: k,
         pair,
         admissible: None,
+        alone: false,
         reason: format!(
             "the correlations up to that of inputs {} and {} contradict each other (the matrix is not positive \
              definite), and changing one of them alone does not mend it",
