@@ -15,6 +15,7 @@ use crate::render;
 use crate::store::{
     Contents, OutcomesReader, OutcomesWriter, Parentage, ResultDirectory, UnfinishedTable,
 };
+use crate::streams::{Purpose, open_uniform, stream};
 use crate::study::Study;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -30,6 +31,8 @@ const REPORT: &str = "report.md";
 const REPORT_HTML: &str = "report.html";
 /// What may differ between two runs of one study.
 const PROVENANCE: &str = "provenance.json";
+/// Rows of each row group that is read once more, beside its last, that are computed again.
+const SPOT_CHECKS: usize = 8;
 
 /// Runs a study and writes its report and tables.
 pub(super) fn run(arguments: &RunArguments) -> Result<Ending> {
@@ -182,16 +185,23 @@ impl Run<'_> {
         Ok((rows.finish()?, looks, computed))
     }
 
-    /// Computes the last sample of a table that was read once more, and refuses a file that differs.
+    /// Computes the last sample of a table that was read once more, and some others, and refuses a file that differs.
+    /// Checksums tell of damage; this tells of a build or a machine that computes other bits.
     fn verify(&self, path: &Path, table: &OutcomeTable) -> Result<()> {
-        let last = table.first + table.rows() as u64 - 1;
-        let again = replay::compute(self.study, last)?;
-        if replay::same_bits((table, table.rows() - 1), (&again, 0)) {
-            return Ok(());
+        let mut stream = stream(self.study.sampling.seed, Purpose::SpotCheck, table.first);
+        let rows = table.rows();
+        let drawn = (0..SPOT_CHECKS).map(|_| (open_uniform(&mut stream) * rows as f64) as usize);
+        for row in std::iter::once(rows - 1).chain(drawn) {
+            let index = table.first + row as u64;
+            let again = replay::compute(self.study, index)?;
+            if !replay::same_bits((table, row), (&again, 0)) {
+                let reason = format!("sample {index} computed again differs from its row");
+                let help =
+                    "the file was changed, or this build computes other bits: run without --resume";
+                return Err(Error::file(path, "resume", reason, help));
+            }
         }
-        let reason = format!("sample {last} computed again differs from its row");
-        let help = "the file was changed, or this build computes other bits: run without --resume";
-        Err(Error::file(path, "resume", reason, help))
+        Ok(())
     }
 
     /// Takes up the row groups of a run that died, if it is to be continued and they are more than its table has;

@@ -5,12 +5,13 @@
 //! again, and each of these is checked: no byte of a table can change unnoticed. polars writes no checksums of
 //! pages; these are of whole row groups, in the footer's own entries, which other readers pass over.
 
-use super::footer::MAGIC;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::Range;
 
+/// What begins and ends a Parquet file.
+pub(super) const MAGIC: [u8; 4] = *b"PAR1";
 /// The footer's entry that lists the row groups.
 pub(super) const GROUPS_KEY: &str = "reeldown.row_groups";
 /// The footer's entry with the checksum of the footer itself, taken with zeros in its own place.

@@ -3,15 +3,12 @@
 //! A row group's entry and its checksum are known as soon as it is written, so the footer of a table that is not
 //! finished can be kept in a journal, a line a row group, and be put under the table if its writer dies.
 
-use super::checksums::{DIGEST_KEY, GROUPS_KEY, GroupSum, NO_DIGEST, sha256, value_after};
+use super::checksums::{DIGEST_KEY, GROUPS_KEY, GroupSum, MAGIC, NO_DIGEST, sha256, value_after};
 use polars_parquet::parquet::metadata::KeyValue;
 use polars_parquet_format::thrift::protocol::{
     ReadThrift, TCompactInputProtocol, TCompactOutputProtocol,
 };
 use polars_parquet_format::{FileMetaData, RowGroup};
-
-/// What begins and ends a Parquet file.
-pub(super) const MAGIC: [u8; 4] = *b"PAR1";
 
 /// A footer under way.
 #[derive(Debug, Clone)]

@@ -6,11 +6,11 @@
 //! agree on, gets its footer, and is a table like any other, of the rows that were done.
 
 use super::atomic::{AtomicFile, cannot_write, sync_directory};
-use super::checksums;
-use super::footer::{Footer, MAGIC};
+use super::checksums::{self, MAGIC};
+use super::footer::Footer;
 use crate::error::{Error, Result};
 use std::fs::{self, File, OpenOptions};
-use std::io::{ErrorKind, Seek, SeekFrom, Write};
+use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -114,6 +114,7 @@ impl UnfinishedTable {
             checksums::digest(&mut file, bytes).is_ok_and(|found| found == sha256)
         };
         let whole = footer.sums().iter().take_while(|sum| matches(sum.end, &sum.sha256)).count();
+        let whole = if begins_right(&mut file) { whole } else { 0 };
         footer.truncate(whole);
         if whole == 0 {
             drop(file);
@@ -156,6 +157,12 @@ impl UnfinishedTable {
         remove(&journal(&self.table))?;
         remove(&part(&self.table))
     }
+}
+
+/// Whether a file begins as Parquet does.
+fn begins_right(file: &mut File) -> bool {
+    let mut magic = [0; MAGIC.len()];
+    file.rewind().and_then(|()| file.read_exact(&mut magic)).is_ok() && magic == MAGIC
 }
 
 fn cannot_recover(path: &Path, reason: &dyn std::fmt::Display) -> Error {

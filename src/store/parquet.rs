@@ -1,7 +1,8 @@
 //! Parquet through polars: tables with metadata in the footer, one row group a batch.
 
 use super::atomic::{AtomicFile, cannot_write};
-use super::footer::{Footer, MAGIC};
+use super::checksums::MAGIC;
+use super::footer::Footer;
 use super::journal::Journal;
 use crate::error::Result;
 use polars::prelude::{
