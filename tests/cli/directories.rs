@@ -13,12 +13,11 @@ fn json(place: &Place, name: &str) -> Value {
     serde_json::from_slice(&place.bytes(name)).expect("JSON")
 }
 
-/// Starts a run of the embedded study into `run` of a place.
-fn start(place: &Place, samples: &str, seed: &str, extra: &[&str]) -> Child {
-    let out = place.at("run");
+/// Starts a run of the embedded study into a directory.
+fn start(out: &str, samples: &str, seed: &str, extra: &[&str]) -> Child {
     let few = ["--set", "sensitivity.base_samples=0", "--set", "trade.samples=0"];
     program()
-        .args(["run", "--quiet", "--out", &out, "--samples", samples, "--seed", seed])
+        .args(["run", "--quiet", "--out", out, "--samples", samples, "--seed", seed])
         .args(few)
         .args(extra)
         .stdout(Stdio::piped())
@@ -35,7 +34,7 @@ fn ended(child: Child) -> Answer {
 fn regression_two_runs_into_one_directory_do_not_mix() {
     let place = Place::new("two-runs");
     // Started together: whoever comes second is refused, or finds the first one done and replaces it.
-    let children = ["1", "2", "3", "4"].map(|seed| start(&place, "20000", seed, &[]));
+    let children = ["1", "2", "3", "4"].map(|seed| start(&place.at("run"), "20000", seed, &[]));
     let answers = children.map(ended);
     let done = answers.iter().filter(|answer| answer.code == 3).count();
     assert!(done >= 1, "{}", answers[0].err);
@@ -61,7 +60,7 @@ fn regression_two_runs_into_one_directory_do_not_mix() {
 #[test]
 fn regression_a_second_writer_is_refused_and_the_first_one_comes_to_its_end() {
     let place = Place::new("second-writer");
-    let first = start(&place, "400000", "1", &[]);
+    let first = start(&place.at("run"), "400000", "1", &[]);
     let part = place.path().join("run/outcomes.parquet.part");
     while !part.exists() {
         thread::sleep(Duration::from_millis(1));
@@ -69,28 +68,14 @@ fn regression_a_second_writer_is_refused_and_the_first_one_comes_to_its_end() {
     let sweep = ["sweep", "--over", "brake.gap=0.06 in..0.07 in:3", "--nominal", "--out"];
     let out = place.at("run");
     let others =
-        [ended(start(&place, "100", "2", &[])), ended(start(&place, "100", "2", &["--force"]))];
+        [ended(start(&out, "100", "2", &[])), ended(start(&out, "100", "2", &["--force"]))];
     let others = others.into_iter().chain([reeldown(&[&sweep[..], &[&out]].concat())]);
     for answer in others {
         let answer = answer.ended_with(1);
         assert!(answer.err.contains("cannot write into"), "{}", answer.err);
     }
     ended(first).ended_with(3);
-    run(
-        &place,
-        "alone",
-        &[
-            "--samples",
-            "400000",
-            "--seed",
-            "1",
-            "--set",
-            "sensitivity.base_samples=0",
-            "--set",
-            "trade.samples=0",
-        ],
-    )
-    .ended_with(3);
+    ended(start(&place.at("alone"), "400000", "1", &[])).ended_with(3);
     assert_same(&place, "alone", "run");
 }
 
