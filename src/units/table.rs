@@ -123,6 +123,9 @@ impl Quantity {
             Quantity::Area => [0, 2, 0, 0],
             Quantity::HeatCapacity => [1, 2, -2, -1],
             Quantity::Conductance => [1, 2, -3, -1],
+            Quantity::Conductivity => [1, 1, -3, -1],
+            Quantity::VolumetricHeatCapacity => [1, -1, -2, -1],
+            Quantity::Expansion => [0, 0, 0, -1],
         }
     }
 }
@@ -149,6 +152,9 @@ pub(super) fn dimension_name(dimension: Dimension) -> &'static str {
         [0, 3, 0, 0] => "a volume",
         [1, 2, -2, -1] => "a heat capacity",
         [1, 2, -3, -1] => "a thermal conductance",
+        [1, 1, -3, -1] => "a thermal conductivity",
+        [1, -1, -2, -1] => "a heat capacity by volume",
+        [0, 0, 0, -1] => "a thermal expansion",
         _ => "another quantity",
     }
 }

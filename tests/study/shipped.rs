@@ -202,7 +202,7 @@ fn property_later_cards_win_input_by_input() {
 fn property_every_parameter_is_listed_with_its_source() {
     let study = shipped(&["initial.temperature=0 °F", "brake.gap[3]=0.07 in"]).expect("a study");
     let rows = study.resolved();
-    assert_eq!(rows.len(), 32 + 1);
+    assert_eq!(rows.len(), 36 + 1);
     let row = |path: &str| rows.iter().find(|row| row.path == path).expect("a row");
     assert_eq!(row("initial.temperature").text, "0 °F (255.372 K)");
     assert_eq!(row("initial.temperature").source, "--set: 0 °F");

@@ -1,6 +1,7 @@
 //! Which instruction set runs the kernel.
 
 use super::batch::Batch;
+use super::detailed;
 use super::dynamic::Dynamic;
 use super::quasi_steady::QuasiSteady;
 use super::queue::run;
@@ -70,5 +71,17 @@ fn with_lanes<V: Lanes>(
     match model {
         Model::Dynamic => run::<V, Dynamic<V>, 7>(attempt, batch, results, doubtful),
         Model::QuasiSteady => run::<V, QuasiSteady<V>, 5>(attempt, batch, results, doubtful),
+        Model::DetailedDynamic if attempt.fine_space => {
+            run::<V, detailed::Dynamic<V, 7, 4>, 33>(attempt, batch, results, doubtful)
+        }
+        Model::DetailedQuasiSteady if attempt.fine_space => {
+            run::<V, detailed::QuasiSteady<V, 7, 4>, 31>(attempt, batch, results, doubtful)
+        }
+        Model::DetailedDynamic => {
+            run::<V, detailed::Dynamic<V, 5, 3>, 20>(attempt, batch, results, doubtful)
+        }
+        Model::DetailedQuasiSteady => {
+            run::<V, detailed::QuasiSteady<V, 5, 3>, 18>(attempt, batch, results, doubtful)
+        }
     }
 }

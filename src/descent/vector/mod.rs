@@ -38,6 +38,7 @@
 mod batch;
 mod clock;
 mod constants;
+mod detailed;
 mod dispatch;
 mod dynamic;
 #[cfg(test)]

@@ -15,6 +15,9 @@
 //! change of sign: no temperature leaves the range of release and air by more than `H/C` of its own node upwards, or
 //! at all downwards.
 //!
+//! The detailed models report the hottest of their points, whose own part of `C` may be as small as one likes: it has no
+//! bound but that of their mean, which lies below it.
+//!
 //! Rotors and housing are warmed by the fluid alone: neither is ever warmer than the hottest of its peak, release and
 //! air.
 //!
@@ -55,8 +58,8 @@ impl<V: Lanes> Possible<V> {
         let warmest = V::select(aired, release.max(k.air_k), release);
         let work = k.length * (k.weight - value(0.5) * (k.extraction * k.length));
         let (heat, fastest_squared, tautest) = match model {
-            Model::QuasiSteady => (work, infinite, k.weight),
-            Model::Dynamic => {
+            Model::QuasiSteady | Model::DetailedQuasiSteady => (work, infinite, k.weight),
+            Model::Dynamic | Model::DetailedDynamic => {
                 let share = k.payload_share;
                 let left = k.share_slope.neg_mul_add(k.length, share);
                 let smallest = (share * (one - share)).min(left * (one - left));
@@ -66,10 +69,15 @@ impl<V: Lanes> Possible<V> {
                 (heat, (heat + heat) / inertia, infinite)
             }
         };
+        let hottest = if model.is_detailed() {
+            infinite
+        } else {
+            heat.mul_add(k.inverse_fluid_capacity, warmest)
+        };
         Possible {
             coldest: V::select(aired, release.min(k.air_k), release),
             warmest,
-            hottest: heat.mul_add(k.inverse_fluid_capacity, warmest),
+            hottest,
             fastest_squared,
             empty_radius_squared: k.radius_slope.neg_mul_add(k.length, k.full_radius_squared),
             tautest,

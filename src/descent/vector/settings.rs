@@ -26,6 +26,10 @@ pub fn default_tolerance() -> f64 {
     1e-6
 }
 
+/// The detailed models resolve time, final velocity and hottest fluid to 1e-4 with five points along the radius and across
+/// the film, and to some 3e-6, the best that they promise, with seven.
+const COARSEST_FINE: f64 = 5e-5;
+
 /// Tightest tolerance that the arithmetic can serve.
 pub(super) const TIGHTEST: f64 = 1e-12;
 
@@ -40,7 +44,11 @@ impl Settings {
 
     /// The first attempt at every descent.
     pub(super) fn attempt(&self) -> Attempt {
-        Attempt { tolerance: self.used(), first_step: None }
+        Attempt {
+            tolerance: self.used(),
+            first_step: None,
+            fine_space: self.tolerance < COARSEST_FINE,
+        }
     }
 
     /// The attempts at a descent that the first left in doubt, each from rest, tighter by ten and with a shorter
@@ -49,7 +57,8 @@ impl Settings {
         let (mut tolerance, mut share) = (self.used(), 0.1);
         std::iter::from_fn(move || {
             (tolerance, share) = (0.1 * tolerance, 0.1 * share);
-            (tolerance >= 0.99 * TIGHTEST).then_some(Attempt { tolerance, first_step: Some(share) })
+            let attempt = Attempt { tolerance, first_step: Some(share), ..self.attempt() };
+            (tolerance >= 0.99 * TIGHTEST).then_some(attempt)
         })
     }
 
@@ -72,6 +81,8 @@ pub(super) struct Attempt {
     pub tolerance: f64,
     /// Where not none: from rest always, with this share of the usual first step.
     pub first_step: Option<f64>,
+    /// Whether a detailed model takes its finer points: as the first attempt, so that all have the same equations.
+    pub fine_space: bool,
 }
 
 impl Attempt {
@@ -80,6 +91,7 @@ impl Attempt {
         let factor = match model {
             Model::Dynamic => 2.4,
             Model::QuasiSteady => 1.8,
+            Model::DetailedDynamic | Model::DetailedQuasiSteady => 2.0,
         };
         factor * self.tolerance
     }

@@ -1,6 +1,7 @@
 //! The kernel differentiated: one descent, with the derivatives of its outcomes along several directions.
 
 use super::constants::Constants;
+use super::detailed;
 use super::dynamic::Dynamic;
 use super::group::Group;
 use super::model::Model;
@@ -36,6 +37,18 @@ pub fn differentiate(
     match model {
         Kind::Dynamic => run::<Dynamic<Lane>, 7>(attempt, coefficients, plain),
         Kind::QuasiSteady => run::<QuasiSteady<Lane>, 5>(attempt, coefficients, plain),
+        Kind::DetailedDynamic if attempt.fine_space => {
+            run::<detailed::Dynamic<Lane, 7, 4>, 33>(attempt, coefficients, plain)
+        }
+        Kind::DetailedQuasiSteady if attempt.fine_space => {
+            run::<detailed::QuasiSteady<Lane, 7, 4>, 31>(attempt, coefficients, plain)
+        }
+        Kind::DetailedDynamic => {
+            run::<detailed::Dynamic<Lane, 5, 3>, 20>(attempt, coefficients, plain)
+        }
+        Kind::DetailedQuasiSteady => {
+            run::<detailed::QuasiSteady<Lane, 5, 3>, 18>(attempt, coefficients, plain)
+        }
     }
 }
 
