@@ -42,10 +42,10 @@ pub fn differentiate(
             run::<detailed::QuasiSteady<Lane, 7, 4>, 31>(settings, coefficients, plain)
         }
         Kind::DetailedDynamic => {
-            run::<detailed::Dynamic<Lane, 5, 3>, 20>(settings, coefficients, plain)
+            run::<detailed::Dynamic<Lane, 6, 3>, 23>(settings, coefficients, plain)
         }
         Kind::DetailedQuasiSteady => {
-            run::<detailed::QuasiSteady<Lane, 5, 3>, 18>(settings, coefficients, plain)
+            run::<detailed::QuasiSteady<Lane, 6, 3>, 21>(settings, coefficients, plain)
         }
     }
 }
