@@ -127,15 +127,6 @@ impl Files for Recorded {
         self.cards.pop_front().ok_or_else(|| "the footer lacks it".to_owned())
     }
 
-    fn column(
-        &mut self,
-        card: &str,
-        name: &str,
-        column: &str,
-    ) -> std::result::Result<Vec<f64>, String> {
-        crate::study::read_column(card, name, column, PARQUET)
-    }
-
     fn sample(&mut self, card: &str, name: &str) -> std::result::Result<SampleFile, String> {
         crate::study::read_sample(card, name, PARQUET)
     }

@@ -8,7 +8,7 @@ use std::fs::File;
 use std::path::Path;
 
 /// The readers of Parquet files that a study is loaded with.
-pub const PARQUET: Parquet = Parquet { column: read_number_column, table: read_number_table };
+pub const PARQUET: Parquet = Parquet { table: read_number_table };
 
 /// The numbers of a column of a Parquet file. A failure is its reason, in a few words.
 ///

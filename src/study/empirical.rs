@@ -1,15 +1,13 @@
 //! Observed values: listed in a card, or one column of a CSV text.
 
+use super::columns;
 use super::document::{Node, Value};
-use super::files::SampleColumn;
+use super::files::{Files, SampleColumn};
+use super::mistakes::all;
 use super::read;
 use super::values::{check_possible, possible_range};
 use crate::error::{Error, Result};
 use crate::physics::parameters::ParameterInfo;
-
-/// Reads a column of values: the card's name, the file, the column.
-pub(super) type ColumnReader<'r> =
-    &'r mut dyn FnMut(&str, &str, &str) -> std::result::Result<Vec<f64>, String>;
 
 /// The values of an empirical law, and where they were written.
 ///
@@ -18,11 +16,11 @@ pub(super) type ColumnReader<'r> =
 pub(super) fn observed<'n>(
     parameter: &ParameterInfo,
     entry: &dyn Fn(&str) -> Option<&'n Node>,
-    columns: ColumnReader<'_>,
+    files: &mut dyn Files,
 ) -> Result<(Vec<f64>, &'n Node)> {
     match (entry("values"), entry("file"), entry("column")) {
         (Some(list), _, _) => Ok((listed(parameter, list)?, list)),
-        (None, Some(file), Some(column)) => Ok((filed(parameter, file, column, columns)?, file)),
+        (None, Some(file), Some(column)) => Ok((filed(parameter, file, column, files)?, file)),
         // The law's form has been chosen, so one of the two is there.
         _ => Err(Error::argument("an empirical law has neither values nor a file")),
     }
@@ -43,22 +41,25 @@ pub(super) fn listed(parameter: &ParameterInfo, node: &Node) -> Result<Vec<f64>>
         check_possible(parameter, "a value", value, item)?;
         Ok(value)
     };
-    items.iter().map(value).collect()
+    all(items.iter().map(value))
 }
 
 fn filed(
     parameter: &ParameterInfo,
     file: &Node,
     column: &Node,
-    columns: ColumnReader<'_>,
+    files: &mut dyn Files,
 ) -> Result<Vec<f64>> {
     let name = read::string(file, "the name of a file of values")?;
-    let column = read::string(column, "the name of a column")?;
-    let values = columns(&file.place.text.origin, name, column).map_err(|reason| {
-        let problem = format!("cannot take column \"{column}\" from {name}: {reason}");
-        let expected = "expected a CSV file whose first line names its columns, values in SI";
-        file.place.error(problem, expected)
+    let wanted = read::string(column, "the name of a column")?;
+    let content = files.sample(&file.place.text.origin, name).map_err(|reason| {
+        let expected =
+            "expected a CSV or Parquet file, relative to the card, that names its columns";
+        file.place.error(format!("cannot read {name}: {reason}"), expected)
     })?;
+    let values = columns::find(name, &content.columns, wanted)
+        .and_then(|found| columns::in_si(found, parameter.quantity))
+        .map_err(|wrong| column.place.error_with(wrong.problem, wrong.expected, wrong.help))?;
     match values.iter().find(|&&value| !parameter.admits(value)) {
         Some(value) => {
             let problem =
@@ -66,21 +67,6 @@ fn filed(
             Err(file.place.error(problem, possible_range(parameter.parameter)))
         }
         None => Ok(values),
-    }
-}
-
-/// The numbers of `column` in a CSV text whose first line names its columns.
-///
-/// # Errors
-/// What is wrong, with the line: no such column (with those there are), not a finite number, no numbers.
-pub(super) fn column(text: &str, column: &str) -> std::result::Result<Vec<f64>, String> {
-    let mut columns = table(text);
-    match columns.iter().position(|(name, _)| name == column) {
-        Some(place) => columns.swap_remove(place).1,
-        None => {
-            let names: Vec<String> = columns.into_iter().map(|(name, _)| name).collect();
-            Err(format!("it has no such column, only {}", shortened(&names.join(", "))))
-        }
     }
 }
 
@@ -157,20 +143,25 @@ fn shortened(text: &str) -> String {
 mod tests {
     use super::*;
 
+    fn column(text: &str, name: &str) -> std::result::Result<Vec<f64>, String> {
+        let mut columns = table(text).into_iter();
+        columns.find(|(header, _)| header == name).map_or(Err("none".to_owned()), |(_, v)| v)
+    }
+
     #[test]
     fn property_a_column_is_found_by_its_name() {
         let text = "\u{feff}\"gap, m\",other\n0.0015, 1\n\n\"0.0016\",2\n";
-        assert_eq!(column(text, "gap, m"), Ok(vec![0.0015, 0.0016]));
-        assert_eq!(column(text, "other"), Ok(vec![1.0, 2.0]));
+        let read = |name: &str| column(text, name);
+        assert_eq!(read("gap, m"), Ok(vec![0.0015, 0.0016]));
+        assert_eq!(read("other"), Ok(vec![1.0, 2.0]));
     }
 
     #[test]
     fn property_a_bad_column_says_why() {
-        assert!(column("a,b\n1,2\n", "c").is_err_and(|reason| reason.contains("a, b")));
         assert!(column("a\n1\nx\n", "a").is_err_and(|reason| reason.starts_with("line 3")));
         assert!(column("a,b\n1\n", "b").is_err_and(|reason| reason.contains("\"\"")));
         assert!(column("a\nnan\n", "a").is_err());
         assert!(column("a\n", "a").is_err());
-        assert!(column("", "a").is_err());
+        assert!(table("").is_empty());
     }
 }

@@ -27,7 +27,7 @@ impl Study {
     /// [`Error::File`] if the study file cannot be read; a [`crate::error::Diagnostic`] for every
     /// mistake in it, a card that cannot be read included.
     pub fn load(path: Option<&Path>, overrides: &[Override]) -> Result<Study> {
-        Study::load_with(path, overrides, Parquet { column: refuse_column, table: refuse_table })
+        Study::load_with(path, overrides, Parquet { table: refuse_table })
     }
 
     /// [`Study::load`] with a reader of Parquet files, for the data of empirical laws and joint samples.
@@ -84,15 +84,6 @@ impl Files for Disk {
         Ok(NamedText { origin: path.display().to_string(), text })
     }
 
-    fn column(
-        &mut self,
-        card: &str,
-        name: &str,
-        column: &str,
-    ) -> std::result::Result<Vec<f64>, String> {
-        read_column(card, name, column, self.parquet)
-    }
-
     fn sample(&mut self, card: &str, name: &str) -> std::result::Result<SampleFile, String> {
         read_sample(card, name, self.parquet)
     }
@@ -102,19 +93,13 @@ impl Files for Disk {
 /// it hands the reader in.
 #[derive(Debug, Clone, Copy)]
 pub struct Parquet {
-    /// The numbers of one column.
-    pub column: fn(&Path, &str) -> std::result::Result<Vec<f64>, String>,
     /// All columns in their order.
     pub table: fn(&Path) -> std::result::Result<Vec<SampleColumn>, String>,
 }
 
 const NO_PARQUET: &str = "Parquet is not read here: export the column as CSV";
 
-/// The readers where there are none.
-fn refuse_column(_: &Path, _: &str) -> std::result::Result<Vec<f64>, String> {
-    Err(NO_PARQUET.to_owned())
-}
-
+/// The reader where there is none.
 fn refuse_table(_: &Path) -> std::result::Result<Vec<SampleColumn>, String> {
     Err(NO_PARQUET.to_owned())
 }
@@ -130,7 +115,7 @@ fn is_parquet(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "parquet")
 }
 
-/// The joint samples in the CSV or Parquet file `name` that the card called `card` names: found relative to
+/// The columns of the CSV or Parquet file `name` that the card called `card` names: found relative to
 /// the card, or to the working directory for an embedded one.
 ///
 /// # Errors
@@ -148,24 +133,6 @@ pub fn read_sample(
         false => empirical::table(&as_text(bytes)?),
     };
     Ok(SampleFile { sha256, columns })
-}
-
-/// The numbers of a column of the CSV or Parquet file `name` that the card called `card` names: found relative to
-/// the card, or to the working directory for an embedded one.
-///
-/// # Errors
-/// Why the column cannot be read, in a few words.
-pub fn read_column(
-    card: &str,
-    name: &str,
-    column: &str,
-    parquet: Parquet,
-) -> std::result::Result<Vec<f64>, String> {
-    let path = beside(card, name);
-    if is_parquet(&path) {
-        return (parquet.column)(&path, column);
-    }
-    empirical::column(&read_text(&path)?, column)
 }
 
 /// The text of a file, or why there is none.

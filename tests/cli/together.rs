@@ -92,7 +92,11 @@ fn property_csv_with_units_is_the_same_sample_in_si() {
     // A digest of the file that is not its own.
     write(&place, "card.toml", &format!("{}sha256 = \"{}\"\n", card("si.csv"), "0".repeat(64)));
     let refused = reeldown(&["check", &place.at("study.toml")]).ended_with(1);
-    assert!(refused.err.contains("si.csv is another file: its SHA-256 is "), "{}", refused.err);
+    assert!(
+        refused.err.contains("si.csv does not match the stated SHA-256; its own is "),
+        "{}",
+        refused.err
+    );
 }
 
 #[test]

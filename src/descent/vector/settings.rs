@@ -5,8 +5,8 @@ use crate::descent::model::Model;
 /// The numerical settings of an ensemble.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Largest relative error wanted in time, final velocity and peak fluid temperature, from 1e-3 to
-    /// 1e-12; beyond either end, that end.
+    /// Largest relative error wanted in time, final velocity and peak fluid temperature, in [`TOLERANCES`];
+    /// beyond either end, that end.
     ///
     /// Measured against runs at 1e-11: it holds for the worst of 10 000 members of the default study, and
     /// ten times it for a stress set (viscosity × 0.2 … × 5, 0 … 100 °F, Cross thinning, runaways, descents
@@ -20,6 +20,10 @@ impl Default for Settings {
         Settings { tolerance: default_tolerance() }
     }
 }
+
+/// The tolerances that can be kept: below, rounding is larger; above, the steps are no longer those of a
+/// smooth solution.
+pub const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-12..=1e-3;
 
 /// The tolerance of a study that names none.
 pub fn default_tolerance() -> f64 {
@@ -43,7 +47,7 @@ impl Settings {
             Model::QuasiSteady => 1.8,
             Model::DetailedDynamic | Model::DetailedQuasiSteady => 1.4,
         };
-        factor * self.tolerance.clamp(1e-12, 1e-3)
+        factor * self.tolerance.clamp(*TOLERANCES.start(), *TOLERANCES.end())
     }
 }
 
