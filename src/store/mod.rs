@@ -4,11 +4,11 @@
 
 mod atomic;
 mod column_file;
-mod damage;
 mod outcomes_file;
 mod parquet;
+mod reader;
 
 pub use atomic::{AtomicFile, refuse_obstacle, write_bytes, write_text};
-pub use column_file::{NumberColumns, PARQUET, read_number_column, read_number_columns};
+pub use column_file::{PARQUET, read_number_column};
 pub use outcomes_file::{OutcomesReader, OutcomesWriter, Parentage};
 pub use parquet::{Field, write_table};

@@ -7,6 +7,7 @@ mod comparing;
 mod dependence;
 mod determinism;
 mod disk;
+mod doors;
 mod errors;
 mod few_breaches;
 mod inspection;
