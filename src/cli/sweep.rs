@@ -1,7 +1,7 @@
 //! `reeldown sweep`: the design space along one or two paths.
 
 use super::arguments::SweepArguments;
-use super::figure_files::write_figures;
+use super::figure_files::write_report_figures;
 use super::output::{say, say_error, say_notes};
 use super::run::quoted;
 use super::watch::{Watch, stop_on_interrupt};
@@ -11,7 +11,7 @@ use crate::campaign::{self, Progress};
 use crate::error::{Error, Result};
 use crate::findings::sweep::{SweepFinding, sweep as findings};
 use crate::render;
-use crate::store::{Field, refuse_obstacle, write_table, write_text};
+use crate::store::{Contents, Field, ResultDirectory, write_table};
 use crate::study::{Over, Study, design_path, option_error};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -37,9 +37,13 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Ending> {
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from("runs").join(format!("{}-sweep", arguments.study.name())));
-    for name in [TABLE, FINDINGS, REPORT] {
-        refuse_obstacle(&directory.join(name))?;
-    }
+    let contents = Contents {
+        kind: "sweep",
+        study: &study.title,
+        files: &[TABLE, FINDINGS, REPORT],
+        force: arguments.force,
+    };
+    let directory = ResultDirectory::open(&directory, contents)?;
     say_notes(&study);
     let progress = Arc::new(Progress::default());
     stop_on_interrupt(&progress)?;
@@ -56,11 +60,11 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Ending> {
     };
     let json = serde_json::to_string_pretty(&finding)
         .map_err(|reason| Error::argument(format!("the sweep cannot be written: {reason}")))?;
-    write(&directory, &study, &finding, &json)?;
+    let report = directory.path().join(REPORT);
+    write(directory, &study, &finding, &json)?;
     if arguments.json {
         return done(&json);
     }
-    let report = directory.join(REPORT);
     say(&format!("{}\nreport: {}", render::sweep_terminal(&finding), report.display()))?;
     Ok(Ending::Done)
 }
@@ -158,12 +162,18 @@ fn command(arguments: &SweepArguments) -> String {
     words.join(" ")
 }
 
-fn write(directory: &Path, study: &Study, finding: &SweepFinding, json: &str) -> Result<()> {
-    write_text(&directory.join(FINDINGS), &format!("{json}\n"))?;
+fn write(
+    directory: ResultDirectory,
+    study: &Study,
+    finding: &SweepFinding,
+    json: &str,
+) -> Result<()> {
+    directory.write_text(FINDINGS, &format!("{json}\n"))?;
     let figures = render::sweep_figures(finding);
-    write_figures(&directory.join("figures"), &figures)?;
-    write_text(&directory.join(REPORT), &render::sweep_markdown(finding, &figures))?;
-    write_long_table(&directory.join(TABLE), study, finding)
+    write_report_figures(&directory, &figures)?;
+    directory.write_text(REPORT, &render::sweep_markdown(finding, &figures))?;
+    write_long_table(&directory.table(TABLE)?, study, finding)?;
+    directory.finish()
 }
 
 /// One row of the long table: a number of a cell.

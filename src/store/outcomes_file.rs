@@ -1,5 +1,6 @@
 //! `outcomes.parquet`: one row a sample, with the names of its parents in the footer.
 
+use super::checksums::{Checksums, DIGEST_KEY, GROUPS_KEY};
 use super::parquet::{TableWriter, frame};
 use super::reader::{Cell, ParquetFile};
 use crate::descent::{Fault, OutcomeQuantity};
@@ -107,7 +108,8 @@ fn number_column(name: &str, values: Vec<f64>, faults: Option<&[Option<Fault>]>)
     Column::new(name.into(), values)
 }
 
-/// Writes `outcomes.parquet`, row group by row group.
+/// Writes `outcomes.parquet`, row group by row group. What was written outlives the process: see
+/// [`super::UnfinishedTable`].
 pub struct OutcomesWriter {
     layout: Layout,
     writer: TableWriter,
@@ -121,7 +123,7 @@ impl OutcomesWriter {
     pub fn create(path: &Path, study: &Study, parentage: &Parentage) -> Result<Self> {
         let layout = Layout::new(study);
         let schema = layout.frame(&[]).map_err(|reason| unusable(path, reason))?;
-        let writer = TableWriter::create(path, schema.schema(), parentage.entries())?;
+        let writer = TableWriter::create_durable(path, schema.schema(), parentage.entries())?;
         Ok(OutcomesWriter { layout, writer })
     }
 
@@ -149,6 +151,7 @@ pub struct OutcomesReader {
     path: PathBuf,
     rows: u64,
     parentage: Parentage,
+    checksums: Checksums,
 }
 
 fn unusable(path: &Path, reason: impl std::fmt::Display) -> Error {
@@ -164,16 +167,22 @@ impl OutcomesReader {
     /// Opens a file and reads its footer.
     ///
     /// # Errors
-    /// If it is not there, not Parquet, or not written by this program.
+    /// If it is not there, not Parquet, damaged, or not written by this program.
     pub fn open(path: &Path) -> Result<Self> {
         // A pipe or a device could keep a reader waiting for ever.
         if std::fs::metadata(path).is_ok_and(|there| !there.is_file()) {
             return Err(unusable(path, "it is not a regular file"));
         }
-        let file = File::open(path).map_err(|reason| unusable(path, reason))?;
+        let mut file = File::open(path).map_err(|reason| unusable(path, reason))?;
+        let checksums = Checksums::of(&mut file).map_err(|reason| unusable(path, reason))?;
+        let none = "it is not a table of reeldown's with checksums: it is another file, is cut off, or was written \
+                    by an earlier version";
+        let checksums = checksums.ok_or_else(|| unusable(path, none))?;
         let file = ParquetFile::open(file).map_err(|reason| unusable(path, reason))?;
         let entry = |(key, value): &(String, String)| {
-            Some((key.strip_prefix(PREFIX)?.to_owned(), value.clone()))
+            let own = key != GROUPS_KEY && key != DIGEST_KEY;
+            let key = key.strip_prefix(PREFIX).filter(|_| own)?;
+            Some((key.to_owned(), value.clone()))
         };
         let parentage: BTreeMap<String, String> =
             file.metadata().iter().filter_map(entry).collect();
@@ -181,7 +190,7 @@ impl OutcomesReader {
             return Err(unusable(path, "its footer has no entry of reeldown's"));
         }
         let (path, rows) = (path.to_owned(), file.rows());
-        Ok(OutcomesReader { path, rows, parentage: Parentage(parentage) })
+        Ok(OutcomesReader { path, rows, parentage: Parentage(parentage), checksums })
     }
 
     /// Number of samples in the file.
@@ -194,13 +203,15 @@ impl OutcomesReader {
         &self.parentage
     }
 
-    /// Reads samples `first` … `first + rows − 1` of a file of this study.
+    /// Reads samples `first` … `first + rows − 1` of a file of this study, after verifying the row groups that
+    /// hold them.
     ///
     /// # Errors
-    /// If the file has other columns than the study, or cannot be read.
+    /// If a row group does not match its checksum, the file has other columns than the study, or it cannot be read.
     pub fn read(&self, study: &Study, first: u64, rows: usize) -> Result<OutcomeTable> {
         let fail = |reason: String| unusable(&self.path, reason);
-        let file = File::open(&self.path).map_err(|reason| unusable(&self.path, reason))?;
+        let mut file = File::open(&self.path).map_err(|reason| unusable(&self.path, reason))?;
+        self.checksums.verify(&mut file, first..first.saturating_add(rows as u64)).map_err(fail)?;
         let mut file = ParquetFile::open(file).map_err(fail)?;
         if first.checked_add(rows as u64).is_none_or(|end| end > file.rows()) {
             return Err(fail(format!("it has no samples {first} to {}", first + rows as u64 - 1)));
