@@ -11,7 +11,7 @@ use crate::descent::driven::Drive;
 use crate::error::{Error, Result};
 use crate::findings::calibration::{self as findings, CalibrationFinding};
 use crate::render;
-use crate::store::{Contents, Field, ResultDirectory, read_number_columns, write_table};
+use crate::store::{Contents, Field, PARQUET, ResultDirectory, write_table};
 use crate::study::{MeasuredRun, Study, sha256};
 use crate::units;
 use std::path::PathBuf;
@@ -147,7 +147,10 @@ fn positive(option: &str, text: &str, quantity: units::Quantity) -> Result<f64> 
 fn load(paths: &[PathBuf]) -> Result<Vec<(MeasuredRun, String)>> {
     let mut runs: Vec<(MeasuredRun, String)> = Vec::new();
     for path in paths {
-        let run = MeasuredRun::load(path, Default::default(), read_number_columns)?;
+        let run = MeasuredRun::load(path, Default::default(), PARQUET)?;
+        if let Some(note) = run.note() {
+            say_error(&format!("note: {note}"));
+        }
         let bytes = std::fs::read(path).map_err(|reason| Error::file(path, "read", reason, ""))?;
         if let Some((other, _)) = runs.iter().find(|(other, _)| other.digest == run.digest) {
             return Err(Error::argument(format!(

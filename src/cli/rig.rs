@@ -2,7 +2,7 @@
 
 use super::descend::{outcome_json, outcome_table, write_trace};
 use super::figure_files::write_figures;
-use super::output::say_notes;
+use super::output::{say_error, say_notes};
 use super::rig_arguments::{RigArguments, option};
 use super::{Ending, done};
 use crate::descent::driven::Drive;
@@ -13,7 +13,7 @@ use crate::physics::Parameter;
 use crate::render::{
     rig_comparison_terminal, rig_figures, rig_mode_figures, rig_plan_terminal, table,
 };
-use crate::store::read_number_columns;
+use crate::store::PARQUET;
 use crate::study::measured_run::Acceptance;
 use crate::study::{Limit, MeasuredRun, Study};
 use crate::units::{Quantity, System, engineering, format_engineering};
@@ -68,8 +68,10 @@ fn single(
         (Some(path), _) => {
             let longest_step =
                 if arguments.gaps { f64::INFINITY } else { Acceptance::default().longest_step };
-            let measured =
-                MeasuredRun::load(path, Acceptance { longest_step }, read_number_columns)?;
+            let measured = MeasuredRun::load(path, Acceptance { longest_step }, PARQUET)?;
+            if let Some(note) = measured.note() {
+                say_error(&format!("note: {note}"));
+            }
             let drive = arguments.by.map_or(measured.preferred_drive(), Drive::from);
             let run = rig::recorded(&study.design, &measured, drive)?;
             let title = format!("driven by the {} recorded in {}", drive.name(), path.display());

@@ -73,7 +73,8 @@ fn filed(
 /// The columns of a CSV text whose first line names them, each with its numbers or why it holds none.
 ///
 /// Fields are separated by commas and may be quoted; empty lines are skipped; numbers are SI unless the
-/// reader of a column knows better.
+/// reader of a column knows better. A line with more or fewer fields than the header leaves no column: which field
+/// belongs to which name is then a guess.
 pub(super) fn table(text: &str) -> Vec<SampleColumn> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
@@ -81,9 +82,19 @@ pub(super) fn table(text: &str) -> Vec<SampleColumn> {
     let mut columns: Vec<SampleColumn> =
         header.into_iter().map(|name| (name, Ok(Vec::new()))).collect();
     for (number, line) in lines {
-        let mut fields = fields(line).into_iter();
-        for (_, values) in &mut columns {
-            let field = fields.next().unwrap_or_default();
+        let fields = fields(line);
+        if fields.len() != columns.len() {
+            let reason = format!(
+                "line {} has {} where the header names {} (commas separate columns, and numbers have a \
+                 decimal point)",
+                number + 1,
+                counted(fields.len(), "value"),
+                counted(columns.len(), "column")
+            );
+            columns.iter_mut().for_each(|(_, values)| *values = Err(reason.clone()));
+            return columns;
+        }
+        for ((_, values), field) in columns.iter_mut().zip(fields) {
             let Ok(numbers) = values else { continue };
             match field.parse::<f64>() {
                 Ok(value) if value.is_finite() => numbers.push(value),
@@ -103,6 +114,20 @@ pub(super) fn table(text: &str) -> Vec<SampleColumn> {
         }
     }
     columns
+}
+
+/// Takes the numbers of columns whose name another one has too: which of them is meant is not known.
+pub(super) fn refuse_repeated(columns: &mut [SampleColumn]) {
+    for k in 0..columns.len() {
+        let times = columns.iter().filter(|(name, _)| *name == columns[k].0).count();
+        if times > 1 {
+            columns[k].1 = Err(format!("{times} columns have this name"));
+        }
+    }
+}
+
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 /// The fields of a line, without their quotes.
@@ -144,8 +169,10 @@ mod tests {
     use super::*;
 
     fn column(text: &str, name: &str) -> std::result::Result<Vec<f64>, String> {
-        let mut columns = table(text).into_iter();
-        columns.find(|(header, _)| header == name).map_or(Err("none".to_owned()), |(_, v)| v)
+        let mut columns = table(text);
+        refuse_repeated(&mut columns);
+        let found = columns.into_iter().find(|(header, _)| header == name);
+        found.map_or(Err("none".to_owned()), |(_, values)| values)
     }
 
     #[test]
@@ -159,9 +186,31 @@ mod tests {
     #[test]
     fn property_a_bad_column_says_why() {
         assert!(column("a\n1\nx\n", "a").is_err_and(|reason| reason.starts_with("line 3")));
-        assert!(column("a,b\n1\n", "b").is_err_and(|reason| reason.contains("\"\"")));
+        assert!(column("a,b\n1,\n", "b").is_err_and(|reason| reason.contains("\"\"")));
         assert!(column("a\nnan\n", "a").is_err());
         assert!(column("a\n", "a").is_err());
         assert!(table("").is_empty());
+    }
+
+    #[test]
+    fn regression_lines_that_do_not_fit_the_header_leave_no_column() {
+        // Issue 12: a decimal comma made 288.15 °C a column of 288 and one of 15 that had no name.
+        let reason = column("T\n288,15\n290,65\n", "T").unwrap_err();
+        assert!(
+            reason.starts_with("line 2 has 2 values where the header names 1 column"),
+            "{reason}"
+        );
+        let reason = column("a,b\n1,2\n\n3\n", "a").unwrap_err();
+        assert!(
+            reason.starts_with("line 4 has 1 value where the header names 2 columns"),
+            "{reason}"
+        );
+    }
+
+    #[test]
+    fn regression_of_two_columns_with_one_name_neither_is_taken() {
+        let text = "a,b,a\n1,2,3\n";
+        assert_eq!(column(text, "a"), Err("2 columns have this name".to_owned()));
+        assert_eq!(column(text, "b"), Ok(vec![2.0]));
     }
 }

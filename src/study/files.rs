@@ -27,6 +27,9 @@ pub trait Files {
 /// A column of numbers, or why it holds none, in a few words.
 pub type SampleColumn = (String, std::result::Result<Vec<f64>, String>);
 
+/// A column of numbers, `None` where one is missing, or why it holds none, in a few words.
+pub type NumberColumn = (String, std::result::Result<Vec<Option<f64>>, String>);
+
 /// A file of columns, read.
 #[derive(Debug, Clone)]
 pub struct SampleFile {

@@ -3,7 +3,7 @@
 use super::assemble::assemble;
 use super::digest::of_bytes;
 use super::empirical;
-use super::files::{Files, NamedText, SampleColumn, SampleFile};
+use super::files::{Files, NamedText, NumberColumn, SampleColumn, SampleFile};
 use super::{Override, Study};
 use crate::error::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -93,14 +93,14 @@ impl Files for Disk {
 /// it hands the reader in.
 #[derive(Debug, Clone, Copy)]
 pub struct Parquet {
-    /// All columns in their order.
-    pub table: fn(&Path) -> std::result::Result<Vec<SampleColumn>, String>,
+    /// All columns of a file's bytes, in their order.
+    pub table: fn(&[u8]) -> std::result::Result<Vec<NumberColumn>, String>,
 }
 
 const NO_PARQUET: &str = "Parquet is not read here: export the column as CSV";
 
 /// The reader where there is none.
-fn refuse_table(_: &Path) -> std::result::Result<Vec<SampleColumn>, String> {
+fn refuse_table(_: &[u8]) -> std::result::Result<Vec<NumberColumn>, String> {
     Err(NO_PARQUET.to_owned())
 }
 
@@ -111,8 +111,27 @@ fn beside(card: &str, name: &str) -> PathBuf {
     directory.unwrap_or(Path::new("")).join(name)
 }
 
-fn is_parquet(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending == "parquet")
+/// Whether a file is read as Parquet: by its ending, or, whatever that is, by its first and last bytes.
+pub(super) fn is_parquet(path: &Path, bytes: &[u8]) -> bool {
+    const MAGIC: &[u8] = b"PAR1";
+    let by_ending = path.extension().is_some_and(|ending| {
+        ["parquet", "parq", "pq"].iter().any(|known| ending.eq_ignore_ascii_case(known))
+    });
+    by_ending || bytes.starts_with(MAGIC) && bytes.ends_with(MAGIC)
+}
+
+/// A column in which nothing may be missing.
+fn complete((name, values): NumberColumn) -> SampleColumn {
+    let finite = |(row, value): (usize, Option<f64>)| match value {
+        Some(value) if value.is_finite() => Ok(value),
+        Some(value) => Err(format!("row {} is {value}, not a finite number", row + 1)),
+        None => Err(format!("row {} is null", row + 1)),
+    };
+    let values = values.and_then(|values| values.into_iter().enumerate().map(finite).collect());
+    match values {
+        Ok(values) if Vec::is_empty(&values) => (name, Err("it holds no numbers".to_owned())),
+        values => (name, values),
+    }
 }
 
 /// The columns of the CSV or Parquet file `name` that the card called `card` names: found relative to
@@ -128,10 +147,11 @@ pub fn read_sample(
     let path = beside(card, name);
     let bytes = read_bytes(&path)?;
     let sha256 = of_bytes(&bytes);
-    let columns = match is_parquet(&path) {
-        true => (parquet.table)(&path)?,
+    let mut columns = match is_parquet(&path, &bytes) {
+        true => (parquet.table)(&bytes)?.into_iter().map(complete).collect(),
         false => empirical::table(&as_text(bytes)?),
     };
+    empirical::refuse_repeated(&mut columns);
     Ok(SampleFile { sha256, columns })
 }
 
@@ -140,16 +160,27 @@ pub(super) fn read_text(path: &Path) -> std::result::Result<String, String> {
     as_text(read_bytes(path)?)
 }
 
-fn read_bytes(path: &Path) -> std::result::Result<Vec<u8>, String> {
-    std::fs::read(path).map_err(|error| match error.kind() {
+/// The bytes of a file, or why there are none. A pipe is refused, and so is a device: either may never end.
+///
+/// # Errors
+/// Why the file cannot be read, in a few words.
+pub fn read_bytes(path: &Path) -> std::result::Result<Vec<u8>, String> {
+    let reason = |error: std::io::Error| match error.kind() {
         std::io::ErrorKind::NotFound => "no such file".to_owned(),
-        std::io::ErrorKind::IsADirectory => "it is a directory".to_owned(),
         std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
         _ => error.to_string(),
-    })
+    };
+    let about = std::fs::metadata(path).map_err(reason)?;
+    if about.is_dir() {
+        return Err("it is a directory".to_owned());
+    }
+    if !about.is_file() {
+        return Err("it is a pipe or a device, not a file".to_owned());
+    }
+    std::fs::read(path).map_err(reason)
 }
 
-fn as_text(bytes: Vec<u8>) -> std::result::Result<String, String> {
+pub(super) fn as_text(bytes: Vec<u8>) -> std::result::Result<String, String> {
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         format!("it is not UTF-8 text from byte {valid} on")

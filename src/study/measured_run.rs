@@ -12,15 +12,17 @@
 //! of `force` and `speed` are needed; the rest is what was instrumented. Every further line is one reading,
 //! with a number in every column. Fields may be quoted; numbers have a decimal point.
 //!
-//! In a Parquet file the columns are in SI under the names `time_s`, `force_n`, `speed_m_per_s`, `line_m`,
-//! `fluid_temperature_k`, `rotor_temperature_k`, `housing_temperature_k` (also `tension_n` and
-//! `velocity_m_per_s`, as in the traces that `reeldown` writes).
+//! In a Parquet file the columns have the same names with their units, or are in SI under the names `time_s`,
+//! `force_n`, `speed_m_per_s`, `line_m`, `fluid_temperature_k`, `rotor_temperature_k`, `housing_temperature_k` (also
+//! `tension_n` and `velocity_m_per_s`, as in the traces that `reeldown` writes). It may hold other columns.
 
 use super::digest;
+use super::files::NumberColumn;
+use super::load::{Parquet, as_text, is_parquet, read_bytes};
 use super::place::{Place, Text};
 use crate::descent::driven::{Drive, Record};
 use crate::error::{Error, Result};
-use crate::units::spelling::nearest;
+use crate::units::spelling::{edit_distance, nearest};
 use crate::units::{self, Quantity, number};
 use std::path::Path;
 use std::sync::Arc;
@@ -38,12 +40,10 @@ pub const CHANNELS: [(&str, Quantity, &[&str]); 7] = [
 
 /// A step in time this many times the usual one is a gap.
 const GAP: f64 = 5.0;
+/// A name that differs from a channel's in so many letters is a misspelling of it.
+const MISSPELT: usize = 2;
 /// The hottest that an instrument can have read, K.
 const HOTTEST_K: f64 = 2000.0;
-
-/// Reads every number column of a Parquet file: names and values, `None` for null. A failure is its reason.
-/// Only a higher floor knows Parquet, so it hands the reader in.
-pub type ParquetColumns = fn(&Path) -> std::result::Result<Vec<(String, Vec<Option<f64>>)>, String>;
 
 /// What is accepted of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,21 +79,25 @@ pub struct MeasuredRun {
     pub rotor_k: Option<Vec<f64>>,
     /// Housing temperature, K.
     pub housing_k: Option<Vec<f64>>,
+    /// Columns of the file that were not read.
+    pub unused: Vec<String>,
 }
 
 impl MeasuredRun {
-    /// Reads a run from a CSV file, or from a Parquet file (by its ending).
+    /// Reads a run from a CSV or Parquet file.
     ///
     /// # Errors
     /// [`Error::File`] for a file that cannot be read; else what [`MeasuredRun::from_csv`] says.
-    pub fn load(path: &Path, acceptance: Acceptance, parquet: ParquetColumns) -> Result<Self> {
+    pub fn load(path: &Path, acceptance: Acceptance, parquet: Parquet) -> Result<Self> {
         let origin = path.display().to_string();
         let help = "name a CSV file with a header such as: time [s], force [lbf], speed [ft/s]";
         let cannot_read = |reason: String| Error::file(path, "read", reason, help);
-        if path.extension().is_some_and(|ending| ending == "parquet") {
-            return from_columns(&origin, parquet(path).map_err(cannot_read)?, acceptance);
+        let bytes = read_bytes(path).map_err(cannot_read)?;
+        if is_parquet(path, &bytes) {
+            let columns = (parquet.table)(&bytes).map_err(cannot_read)?;
+            return from_columns(&origin, columns, acceptance);
         }
-        let text = super::load::read_text(path).map_err(cannot_read)?;
+        let text = as_text(bytes).map_err(cannot_read)?;
         Self::from_csv(&origin, &text, acceptance)
     }
 
@@ -137,6 +141,14 @@ impl MeasuredRun {
         Record::new(drive, self.time_s.clone(), values.clone())
     }
 
+    /// What a reader should know about how the file was read.
+    pub fn note(&self) -> Option<String> {
+        let names = self.unused.iter().take(12).cloned().collect::<Vec<_>>().join(", ");
+        let more = if self.unused.len() > 12 { ", …" } else { "" };
+        (!names.is_empty())
+            .then(|| format!("{}: columns that are not read: {names}{more}", self.origin))
+    }
+
     /// What drives a prediction unless told otherwise: the force, if it was recorded.
     pub fn preferred_drive(&self) -> Drive {
         if self.force_n.is_some() { Drive::Force } else { Drive::Speed }
@@ -162,6 +174,7 @@ impl MeasuredRun {
             fluid_k: fluid,
             rotor_k: rotor,
             housing_k: housing,
+            unused: Vec::new(),
         }
     }
 }
@@ -388,41 +401,89 @@ fn fields(line: &str, start: usize) -> Vec<Field> {
     fields
 }
 
-/// A run from columns in SI.
+/// A run from the columns of a Parquet file.
 fn from_columns(
     origin: &str,
-    columns: Vec<(String, Vec<Option<f64>>)>,
+    columns: Vec<NumberColumn>,
     acceptance: Acceptance,
 ) -> Result<MeasuredRun> {
-    let wrong = |what: String| Err(Error::argument(format!("{origin}: {what}")));
+    let wrong = |what: String| Error::argument(format!("{origin}: {what}"));
     let mut values: [Option<Vec<f64>>; CHANNELS.len()] = Default::default();
-    for (channel, (name, quantity, names)) in CHANNELS.iter().enumerate() {
-        let mut found = columns.iter().filter(|(column, _)| names.contains(&column.as_str()));
-        let Some((column, entries)) = found.next() else { continue };
-        if let Some((other, _)) = found.next() {
-            return wrong(format!("columns {column} and {other} both hold the {name}"));
+    let mut held: [Option<String>; CHANNELS.len()] = Default::default();
+    let mut unused = Vec::new();
+    for (column, entries) in columns {
+        let Some((channel, unit)) = channel_of(&column).map_err(wrong)? else {
+            unused.push(column);
+            continue;
+        };
+        let (name, quantity, _) = CHANNELS[channel];
+        if let Some(other) = &held[channel] {
+            return Err(wrong(format!("columns {other} and {column} both hold the {name}")));
         }
+        let entries = entries.map_err(|reason| wrong(format!("column {column}: {reason}")))?;
         let mut series = Vec::with_capacity(entries.len());
-        for (row, entry) in entries.iter().enumerate() {
+        for (row, entry) in entries.into_iter().enumerate() {
             let Some(value) = entry.filter(|value| value.is_finite()) else {
-                return wrong(format!("row {} of column {column} is missing", row + 1));
+                return Err(wrong(format!("row {} of column {column} is missing", row + 1)));
             };
-            if let Some((problem, expected)) = impossible(*quantity, value) {
-                return wrong(format!("row {} of {column}: {problem}: {expected}", row + 1));
+            let value = match unit {
+                None => value,
+                Some(unit) => units::parse(&format!("{value} {unit}"), quantity).map_err(|e| {
+                    wrong(format!("column {column}: {}, {}", e.problem, e.expected))
+                })?,
+            };
+            if let Some((problem, expected)) = impossible(quantity, value) {
+                return Err(wrong(format!("row {} of {column}: {problem}: {expected}", row + 1)));
             }
             series.push(value);
         }
         values[channel] = Some(series);
+        held[channel] = Some(column);
+    }
+    // A channel that is not there, and a column that is named nearly like it: a run is not read without the one for
+    // the sake of the other's spelling.
+    let missing = CHANNELS.iter().zip(&held).filter(|(_, held)| held.is_none());
+    for known in missing.flat_map(|((_, _, names), _)| names.iter()) {
+        let near = |name: &&String| edit_distance(name, known) <= MISSPELT;
+        if let Some(name) = unused.iter().find(near) {
+            return Err(wrong(format!(
+                "unknown column `{name}`: did you mean `{known}`? Give a column that is something else another name"
+            )));
+        }
     }
     let times = values[0].as_deref().unwrap_or_default();
     if times.len() < 2 || (values[1].is_none() && values[2].is_none()) {
-        return wrong(
+        return Err(wrong(
             "expected a column time_s with two rows at least, and force_n or speed_m_per_s"
                 .to_owned(),
-        );
+        ));
     }
     if let Some((row, problem, expected, _)) = irregular(times, acceptance.longest_step) {
-        return wrong(format!("row {}: {problem}: {expected}", row + 1));
+        return Err(wrong(format!("row {}: {problem}: {expected}", row + 1)));
     }
-    Ok(MeasuredRun::new(origin, values))
+    Ok(MeasuredRun { unused, ..MeasuredRun::new(origin, values) })
+}
+
+/// The channel that a column of a Parquet file holds, with its unit unless that is SI's; none of other columns.
+fn channel_of(column: &str) -> std::result::Result<Option<(usize, Option<&str>)>, String> {
+    if let Some(channel) = CHANNELS.iter().position(|(_, _, names)| names.contains(&column)) {
+        return Ok(Some((channel, None)));
+    }
+    let (name, unit) = match column.split_once('[') {
+        Some((name, rest)) => (name.trim(), rest.trim().strip_suffix(']').map(str::trim)),
+        None => (column.trim(), None),
+    };
+    let named = |(known, ..): &(&str, Quantity, &[&str])| *known == name.to_lowercase();
+    let Some(channel) = CHANNELS.iter().position(named) else { return Ok(None) };
+    match unit.filter(|unit| !unit.is_empty()) {
+        Some(unit) => Ok(Some((channel, Some(unit)))),
+        None => {
+            let (name, quantity, names) = CHANNELS[channel];
+            let si = names.first().copied().unwrap_or(name);
+            Err(format!(
+                "column `{column}` has no unit: expected {name} [{}], or in SI {si}",
+                quantity.si_unit()
+            ))
+        }
+    }
 }

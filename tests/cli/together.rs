@@ -190,8 +190,8 @@ fn regression_a_row_without_a_number_names_file_column_row_and_what_was_expected
     for (file, found) in [
         ("text.csv", "line 3: \"thin\" is not a finite number"),
         ("empty.csv", "line 4: \"\" is not a finite number"),
-        ("null.parquet", "row 3 of column fluid.shear_factor is null"),
-        ("text.parquet", "it holds no numbers"),
+        ("null.parquet", "column \"fluid.shear_factor\": row 3 is null"),
+        ("text.parquet", "it holds text, not numbers"),
     ] {
         let message = refused(file);
         let expected = "expected a finite number in every row of the column";

@@ -1,8 +1,9 @@
 //! Measured runs: what is read, and what is said about files that cannot be.
 
 use reeldown::descent::driven::Drive;
-use reeldown::store::{Field, read_number_columns, write_table};
+use reeldown::store::{Field, PARQUET, write_table};
 use reeldown::study::measured_run::{Acceptance, MeasuredRun};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 const LBF: f64 = 4.4482216152605;
 
@@ -79,7 +80,7 @@ fn property_a_parquet_file_is_the_same_run() {
             ("remark".to_owned(), Field::Text(vec![None, None])),
         ]
     };
-    let load = || MeasuredRun::load(&path, Acceptance::default(), read_number_columns);
+    let load = || MeasuredRun::load(&path, Acceptance::default(), PARQUET);
     write_table(&path, columns(numbers(&[6000.0 * LBF, 5000.0 * LBF])), vec![]).unwrap();
     let run = load().unwrap();
     let csv = read("time [s], force [lbf]\n0,6000\n1,5000\n").unwrap();
@@ -93,4 +94,66 @@ fn property_a_parquet_file_is_the_same_run() {
     let message = load().unwrap_err().to_string();
     assert!(message.contains("cannot read"), "{message}");
     std::fs::remove_dir_all(&directory).unwrap();
+}
+
+/// A run in a Parquet file under `name` with these columns beside `time_s` and `force_n`.
+fn parquet(name: &str, more: Vec<(&str, Field)>) -> Result<MeasuredRun, String> {
+    static CALLS: AtomicUsize = AtomicUsize::new(0);
+    let call = CALLS.fetch_add(1, Ordering::Relaxed);
+    let directory = format!("reeldown-run-{}-{call}", std::process::id());
+    let directory = std::env::temp_dir().join(directory);
+    std::fs::create_dir_all(&directory).unwrap();
+    let path = directory.join(name);
+    let numbers = |values: &[f64]| Field::Number(values.iter().map(|&v| Some(v)).collect());
+    let mut columns = vec![
+        ("time_s".to_owned(), numbers(&[0.0, 1.0])),
+        ("force_n".to_owned(), numbers(&[6000.0, 5000.0])),
+    ];
+    columns.extend(more.into_iter().map(|(name, field)| (name.to_owned(), field)));
+    write_table(&path, columns, vec![]).unwrap();
+    let run = MeasuredRun::load(&path, Acceptance::default(), PARQUET);
+    std::fs::remove_dir_all(&directory).unwrap();
+    run.map_err(|error| error.to_string())
+}
+
+#[test]
+fn regression_a_channel_that_is_misspelt_or_holds_no_numbers_is_not_passed_over() {
+    // Issue 12: the run was calibrated without it, and P was 58.73 % in place of 76.18 %.
+    let warm = || Field::Number(vec![Some(288.0), Some(290.0)]);
+    let text = || Field::Text(vec![Some("288".to_owned()), Some("290".to_owned())]);
+    for (column, field, expected) in [
+        ("fluid_temperture_k", warm(), "did you mean `fluid_temperature_k`"),
+        ("Fluid_Temperature_K", warm(), "did you mean `fluid_temperature_k`"),
+        ("fluid_temperature_c", warm(), "did you mean `fluid_temperature_k`"),
+        ("fluid_temperature_k", text(), "it holds text, not numbers"),
+        ("fluid", warm(), "column `fluid` has no unit"),
+        ("fluid [ft]", warm(), "column fluid [ft]: "),
+    ] {
+        let message = parquet("run.parquet", vec![(column, field)]).expect_err(column);
+        assert!(message.contains(expected), "{column}: {message}");
+    }
+    let twice = vec![("fluid_temperature_k", warm()), ("fluid [K]", warm())];
+    let message = parquet("run.parquet", twice).expect_err("twice");
+    assert!(message.contains("both hold the fluid"), "{message}");
+}
+
+#[test]
+fn property_other_columns_are_told_and_units_are_read() {
+    let cold = Field::Number(vec![Some(14.85), Some(16.85)]);
+    let remark = Field::Text(vec![None, None]);
+    let more = vec![
+        ("fluid [°C]", cold),
+        ("remark", remark),
+        ("skin_temperature_k", Field::Count(vec![1, 2])),
+    ];
+    // The ending may be written in capitals, or be another: the file says what it is.
+    for name in ["RUN.PARQUET", "run.pq", "run.dat"] {
+        let run = parquet(name, more.clone()).expect(name);
+        assert_eq!(run.fluid_k, Some(vec![288.0, 290.0]));
+        assert_eq!(run.unused, ["remark", "skin_temperature_k"]);
+        assert!(
+            run.note().is_some_and(|note| note.ends_with("not read: remark, skin_temperature_k"))
+        );
+    }
+    assert_eq!(parquet("run.parquet", Vec::new()).unwrap().note(), None);
 }
