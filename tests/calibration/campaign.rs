@@ -51,6 +51,7 @@ pub fn instruments() -> [Instrument; 5] {
     let instrument = |channel, sensor_sd, discrepancy_sd, unit, step| Instrument {
         channel,
         noise: Noise { sensor_sd, discrepancy_sd, correlation_time_s: 40.0 },
+        systematic: (0.0, 0.0),
         unit,
         step,
     };

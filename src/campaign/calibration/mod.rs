@@ -23,7 +23,7 @@ use crate::study::{MeasuredRun, Study};
 pub use channel::Channel;
 pub use likelihood::{Coordinate, RigLikelihood};
 use next_test::NextTests;
-pub use plan::{ChannelNoise, Options, PlannedRun, Positive, SensorError, is_hardware};
+pub use plan::{ChannelNoise, Options, PlannedRun, Positive, SensorError, Systematic, is_hardware};
 use predictive::RunCheck;
 use risk::Risk;
 
@@ -73,13 +73,12 @@ const SCREENED_BRAKES: usize = 400;
 /// Those of the plan.
 pub fn screen(study: &Study, runs: &[&MeasuredRun], options: &Options) -> Result<Vec<Screened>> {
     let planned = plan::planned(runs, study, options)?;
-    let noise = plan::noise(&planned, options);
-    let likelihood = RigLikelihood::new(study, planned, noise);
+    let likelihood = RigLikelihood::of_runs(study, planned, options);
     let prior = risk::prior_brakes(study, SCREENED_BRAKES)?;
     let mut found = Vec::new();
     for (run, planned) in runs.iter().zip(likelihood.runs()) {
         let initial = vec![planned.initial.mean_k; prior.rows()];
-        let predictions = likelihood.predict(&planned.record, &prior, &initial);
+        let predictions = likelihood.predict(&planned.record, &prior, &initial, &[]);
         for channel in Channel::ALL {
             let Some(values) = channel.measured(run) else { continue };
             let mut suspicions = screening::screen(&run.time_s, values);
@@ -145,7 +144,8 @@ pub fn calibrate<'a>(
     let screened = screen(study, &everything, options)?;
     let planned = plan::planned(runs, study, options)?;
     let held_out = plan::planned(held_out, study, options)?;
-    let noise = plan::noise(&planned, options);
+    let likelihood = RigLikelihood::of_runs(study, planned, options);
+    let noise = likelihood.noise();
     let unseen = held_out
         .iter()
         .flat_map(|run| run.channels.iter().map(move |(channel, _)| (run, *channel)))
@@ -158,7 +158,6 @@ pub fn calibrate<'a>(
             channel.name()
         )));
     }
-    let likelihood = RigLikelihood::new(study, planned, noise);
     let start = vec![0.0; likelihood.coordinates().len()];
     let fit = best_fit(&likelihood, &start)?;
     let posterior = sample(&likelihood, &options.plan)?;

@@ -45,6 +45,34 @@ pub struct ChannelNoise {
     pub discrepancy: Option<(Positive, Positive)>,
 }
 
+/// What all readings of an instrument err by alike, in every run: truth − zero = (1 + gain) (reading − zero) + offset.
+/// Both are normal with mean zero; a standard deviation of zero is an error that the instrument does not have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Systematic {
+    /// The channel.
+    pub channel: Channel,
+    /// Standard deviation of the gain's error.
+    pub gain: f64,
+    /// Standard deviation of the offset, SI.
+    pub offset: f64,
+}
+
+/// Systematic error of load cell, speedometer and line counter where none is stated, as a share: assumed.
+pub const GAIN: f64 = 0.01;
+/// Systematic error of a thermometer where none is stated, K (2 °F): assumed.
+pub const OFFSET_K: f64 = 2.0 / 1.8;
+
+impl Systematic {
+    /// What is assumed of a channel's instrument if nothing is stated; [`crate::findings::rig::Instruments`] plans with
+    /// the same.
+    pub fn assumed(channel: Channel) -> Self {
+        match channel.is_temperature() {
+            true => Systematic { channel, gain: 0.0, offset: OFFSET_K },
+            false => Systematic { channel, gain: GAIN, offset: 0.0 },
+        }
+    }
+}
+
 /// A law of the temperature at a run's start, K.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InitialTemperature {
@@ -72,6 +100,10 @@ pub struct PlannedRun {
 pub struct Options {
     /// Stated standard deviations of sensors, SI.
     pub sensor_sd: Vec<(Channel, f64)>,
+    /// Stated standard deviations of the instruments' gains, as shares; zero for none.
+    pub gain_sd: Vec<(Channel, f64)>,
+    /// Stated standard deviations of the instruments' offsets, SI; zero for none.
+    pub offset_sd: Vec<(Channel, f64)>,
     /// Median of the discrepancy's standard deviation, as a share of the channel's range; none for no discrepancy.
     pub discrepancy: Option<f64>,
     /// Degrees of freedom of heavy-tailed noise; none for normal noise.
@@ -86,6 +118,8 @@ impl Default for Options {
     fn default() -> Self {
         Options {
             sensor_sd: Vec::new(),
+            gain_sd: Vec::new(),
+            offset_sd: Vec::new(),
             discrepancy: Some(0.01),
             degrees_of_freedom: None,
             drive: None,
@@ -96,7 +130,7 @@ impl Default for Options {
 
 /// Standard deviation of a run's initial temperature about its first readings, K: wide, for the readings
 /// themselves are compared too.
-const INITIAL_SD_K: f64 = 5.0;
+pub const INITIAL_SD_K: f64 = 5.0;
 /// Standard deviation of the logarithm of an estimated sensor error, and of a discrepancy.
 const NOISE_LOG_SD: f64 = 1.0;
 /// Median of the discrepancy's correlation time, as a share of the longest run, and the logarithm's standard deviation.
@@ -206,6 +240,31 @@ fn initial_temperature(run: &MeasuredRun, study: &Study) -> InitialTemperature {
             sd_k: INITIAL_SD_K,
         },
     }
+}
+
+/// The systematic errors of every instrument that drives a run or is predicted in one, as stated or else assumed.
+pub fn systematic(runs: &[PlannedRun], options: &Options) -> Vec<Systematic> {
+    let used = |channel: &Channel| {
+        runs.iter().any(|run| {
+            Channel::of_drive(run.record.drive()) == Some(*channel)
+                || run.channels.iter().any(|(other, _)| other == channel)
+        })
+    };
+    let stated = |list: &[(Channel, f64)], channel: Channel| {
+        list.iter().find(|(other, _)| *other == channel).map(|(_, sd)| *sd)
+    };
+    Channel::ALL
+        .into_iter()
+        .filter(used)
+        .map(|channel| {
+            let assumed = Systematic::assumed(channel);
+            Systematic {
+                channel,
+                gain: stated(&options.gain_sd, channel).unwrap_or(assumed.gain),
+                offset: stated(&options.offset_sd, channel).unwrap_or(assumed.offset),
+            }
+        })
+        .collect()
 }
 
 /// The laws of the channels' noise, made from the range that the runs cover.

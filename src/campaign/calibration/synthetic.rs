@@ -34,6 +34,9 @@ pub struct Instrument {
     pub channel: Channel,
     /// Sensor error, and the discrepancy of the model where the channel does not drive.
     pub noise: Noise,
+    /// Gain and offset (SI) that all its readings share: truth = (1 + gain) reading + offset, of a thermometer from
+    /// the ice point.
+    pub systematic: (f64, f64),
     /// Unit of the display, as a header has it.
     pub unit: &'static str,
     /// Step of the display, in that unit.
@@ -88,11 +91,12 @@ pub fn run(
             noise.discrepancy_sd = 0.0;
         }
         let errors = drawn_errors(&series, &noise, &mut stream);
+        let read = channel.correction(instrument.systematic.0, instrument.systematic.1);
         let floor = if channel.is_temperature() { f64::NEG_INFINITY } else { 0.0 };
         let shown = readings
             .iter()
             .zip(errors)
-            .map(|(reading, error)| (channel.predicted(reading) + error).max(floor))
+            .map(|(reading, error)| (read.reading(channel.predicted(reading)) + error).max(floor))
             .map(|value| displayed(value, instrument))
             .collect::<Result<Vec<String>>>()?;
         columns.push((format!("{} [{}]", channel.name(), instrument.unit), shown));
