@@ -94,9 +94,22 @@ fn needs_slopes(method: &str) -> Option<Method> {
     }
 }
 
-/// Why such a method has no number where inputs are drawn from rows.
-const STEPS: &str = "inputs are drawn from the rows of a joint sample: the margins are step functions of the \
-    coordinate that picks the row, without the slopes that this method goes by";
+/// Why such a method has no number where an input's values jump along its coordinate, if one's do.
+fn steps(study: &Study) -> Option<String> {
+    if !study.joint.samples().is_empty() {
+        return Some(
+            "inputs are drawn from the rows of a joint sample: the margins are step functions of the \
+             coordinate that picks the row, without the slopes that this method goes by"
+                .to_owned(),
+        );
+    }
+    let input = study.inputs.iter().find(|input| input.marginal.has_jumps())?;
+    Some(format!(
+        "{} has values with a probability of their own: the margins are step functions of its coordinate, \
+         without the slopes that this method goes by",
+        input.target.path()
+    ))
+}
 
 /// What the samples saw of an event.
 fn seen(counts: &BreachCounts, event: Event) -> Option<Proportion> {
@@ -130,9 +143,10 @@ fn rare_event(
             estimates.push(crude);
         }
     }
+    let steps = steps(study);
     for &method in methods {
-        if let Some(smooth) = needs_slopes(method).filter(|_| !study.joint.samples().is_empty()) {
-            estimates.push(Estimate::without_number(smooth, event, STEPS));
+        if let (Some(smooth), Some(steps)) = (needs_slopes(method), &steps) {
+            estimates.push(Estimate::without_number(smooth, event, steps));
             continue;
         }
         match method {

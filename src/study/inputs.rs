@@ -54,7 +54,7 @@ pub(super) fn inputs(
 
 /// One input of those that are drawn together.
 fn member(together: &Together, target: Target, values: &[f64]) -> Result<Input> {
-    let law = Law::empirical(values.to_vec(), None).map_err(|_| {
+    let law = Law::discrete(values.to_vec(), None).map_err(|_| {
         let problem = format!("{} has one and the same value in every row", target.path());
         let expected = "expected values that differ: a constant belongs in [design]";
         together.key.place.error(problem, expected)

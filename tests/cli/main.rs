@@ -11,6 +11,7 @@ mod errors;
 mod few_breaches;
 mod inspection;
 mod interruption;
+mod listed;
 mod notes;
 mod program;
 mod published;
