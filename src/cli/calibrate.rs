@@ -109,12 +109,51 @@ fn options(arguments: &CalibrateArguments, study: &Study) -> Result<Options> {
     options.discrepancy = match arguments.discrepancy.as_deref() {
         None => options.discrepancy,
         Some("none") => None,
-        Some(share) => Some(positive("--discrepancy", share, units::Quantity::Number)?),
+        Some(share) => {
+            Some(at_least("--discrepancy", share, units::Quantity::Number, Least::Positive)?)
+        }
     };
-    for statement in &arguments.sensor_sd {
-        let wrong = |why: String| {
-            Error::argument(format!("--sensor-sd {statement}: {why}; write speed=\"0.02 ft/s\""))
-        };
+    let sd = |option: &str, statements: &[String], example: &str, of: QuantityOf, least| {
+        channel_values((option, example), statements, of, least)
+    };
+    let difference = |channel: Channel| channel.quantity().of_difference();
+    let share = |_| units::Quantity::Number;
+    options.sensor_sd = sd(
+        "--sensor-sd",
+        &arguments.sensor_sd,
+        "speed=\"0.02 ft/s\"",
+        difference,
+        Least::Positive,
+    )?;
+    options.gain_sd = sd("--gain-sd", &arguments.gain_sd, "force=\"1 %\"", share, Least::Zero)?;
+    options.offset_sd =
+        sd("--offset-sd", &arguments.offset_sd, "fluid=\"2 °F\"", difference, Least::Zero)?;
+    Ok(options)
+}
+
+/// The quantity of a channel's value.
+type QuantityOf = fn(Channel) -> units::Quantity;
+
+/// The smallest value that an option takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Least {
+    /// Anything above zero.
+    Positive,
+    /// Zero, for none.
+    Zero,
+}
+
+/// Values stated for channels, such as speed="0.02 ft/s"; `option` with an example of what to write.
+fn channel_values(
+    (option, example): (&str, &str),
+    statements: &[String],
+    quantity: QuantityOf,
+    least: Least,
+) -> Result<Vec<(Channel, f64)>> {
+    let mut values: Vec<(Channel, f64)> = Vec::new();
+    for statement in statements {
+        let wrong =
+            |why: String| Error::argument(format!("{option} {statement}: {why}; write {example}"));
         let (name, value) = statement
             .split_once('=')
             .ok_or_else(|| wrong("expected a channel and its standard deviation".to_owned()))?;
@@ -122,20 +161,28 @@ fn options(arguments: &CalibrateArguments, study: &Study) -> Result<Options> {
             let names = Channel::ALL.map(Channel::name).join(", ");
             wrong(format!("there is no channel {}, only {names}", name.trim()))
         })?;
-        let quantity = channel.quantity().of_difference();
-        let sd = positive("--sensor-sd", value.trim().trim_matches('"'), quantity)?;
-        options.sensor_sd.push((channel, sd));
+        if values.iter().any(|(other, _)| *other == channel) {
+            return Err(wrong(format!("{} is stated twice", channel.name())));
+        }
+        let text = value.trim().trim_matches('"');
+        values.push((channel, at_least(option, text, quantity(channel), least)?));
     }
-    Ok(options)
+    Ok(values)
 }
 
-fn positive(option: &str, text: &str, quantity: units::Quantity) -> Result<f64> {
+fn at_least(option: &str, text: &str, quantity: units::Quantity, least: Least) -> Result<f64> {
     let value = units::parse(text, quantity).map_err(|error| {
         Error::argument(format!("{option} {text}: {}, {}", error.problem, error.expected))
     })?;
-    match value > 0.0 && value.is_finite() {
+    let (enough, expected) = match least {
+        Least::Positive => (value > 0.0, "a positive number"),
+        Least::Zero => {
+            (value >= 0.0, "a number that is not negative; zero for an error that is not there")
+        }
+    };
+    match enough && value.is_finite() {
         true => Ok(value),
-        false => Err(Error::argument(format!("{option} {text}: expected a positive number"))),
+        false => Err(Error::argument(format!("{option} {text}: expected {expected}"))),
     }
 }
 
@@ -205,7 +252,14 @@ fn command(arguments: &CalibrateArguments) -> String {
     for (option, value) in text {
         words.extend(value.iter().map(|value| format!("{option} {}", quoted(value))));
     }
-    words.extend(arguments.sensor_sd.iter().map(|sd| format!("--sensor-sd {}", quoted(sd))));
+    let stated = [
+        ("--sensor-sd", &arguments.sensor_sd),
+        ("--gain-sd", &arguments.gain_sd),
+        ("--offset-sd", &arguments.offset_sd),
+    ];
+    for (option, statements) in stated {
+        words.extend(statements.iter().map(|sd| format!("{option} {}", quoted(sd))));
+    }
     words.extend(arguments.heavy_tails.iter().map(|df| format!("--heavy-tails {df}")));
     words.extend(arguments.particles.iter().map(|n| format!("--particles {n}")));
     words.extend(arguments.replicates.iter().map(|n| format!("--replicates {n}")));

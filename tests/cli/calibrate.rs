@@ -73,6 +73,9 @@ fn property_bad_options_say_what_was_expected() {
     for (arguments, said) in [
         (vec!["--sensor-sd", "sped=1 ft/s"], "only force, speed"),
         (vec!["--sensor-sd", "speed=1 lbf"], "--sensor-sd"),
+        (vec!["--gain-sd", "force=-1 %"], "not negative"),
+        (vec!["--gain-sd", "force=1 %", "--gain-sd", "force=2 %"], "stated twice"),
+        (vec!["--offset-sd", "fluid=1 ft/s"], "--offset-sd"),
         (vec!["--discrepancy", "-1 %"], "positive"),
         (vec!["--drive", "power"], "force or its speed"),
         (vec!["--data", &data], "counts once"),
@@ -83,4 +86,45 @@ fn property_bad_options_say_what_was_expected() {
         let answer = reeldown(&all).ended_with(1);
         assert!(answer.err.contains(said), "{arguments:?}: {}", answer.err);
     }
+}
+
+/// A load cell that reads 3 % low and a thermometer that reads 5 K high: taken as exact they give another brake, surely;
+/// stated as they are, the band over brakes is wide enough for it.
+#[test]
+fn property_instruments_that_err_widen_the_posterior_by_what_is_stated_of_them() {
+    let place = Place::new("calibrate-instruments");
+    let out = place.path().join("out").display().to_string();
+    let (force, power) = (run("constant_force"), run("constant_power"));
+    let finding = |stated: &[&str]| {
+        let arguments = [
+            &["calibrate", "--data", &force, "--data", &power, "--out", &out, "--json"][..],
+            &["--particles", "400", "--replicates", "2"][..],
+            stated,
+        ]
+        .concat();
+        reeldown(&arguments).json()
+    };
+    let sd = |finding: &serde_json::Value, list: &str, name: &str| {
+        let all = finding[list].as_array().expect("parameters");
+        let found = all.iter().find(|p| p["name"].as_str().is_some_and(|n| n.starts_with(name)));
+        found.map(|p| p["posterior"][1].as_f64().expect("a standard deviation"))
+    };
+    let strength = "brake strength";
+    let exact: Vec<String> = ["force", "speed", "fluid", "housing"]
+        .iter()
+        .flat_map(|channel| {
+            let quantity = if ["force", "speed"].contains(channel) { "gain" } else { "offset" };
+            let zero = if quantity == "gain" { "0" } else { "0 K" };
+            [format!("--{quantity}-sd"), format!("{channel}={zero}")]
+        })
+        .collect();
+    let exact: Vec<&str> = exact.iter().map(String::as_str).collect();
+    let exact = finding(&exact);
+    let wide = finding(&["--gain-sd", "force=3 %", "--gain-sd", "speed=0"]);
+    assert!(sd(&exact, "nuisances", "force: gain").is_none());
+    // What a rig cannot tell apart from the brake's strength stays as it was stated, and widens the strength by it.
+    let gain = sd(&wide, "nuisances", "force: gain").expect("a gain");
+    assert!((0.015..0.035).contains(&gain), "{gain}");
+    let sds = [&exact, &wide].map(|f| sd(f, "parameters", strength).expect("the strength"));
+    assert!(sds[1] * sds[1] > sds[0] * sds[0] + 0.25 * gain * gain, "{sds:?} {gain}");
 }

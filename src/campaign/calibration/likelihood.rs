@@ -376,8 +376,8 @@ impl<'a> RigLikelihood<'a> {
                 for (moment, reading) in prediction.readings.iter().enumerate() {
                     let dual: Dual<DIRECTIONS> = channel.predicted(reading);
                     values[c][moment] = dual.value;
-                    for j in first..last {
-                        by[c][j][moment] = dual.slopes[j - first];
+                    for (column, slope) in by[c][first..last].iter_mut().zip(dual.slopes) {
+                        column[moment] = slope;
                     }
                 }
             }
