@@ -112,8 +112,10 @@ fn input(statement: &Statement, columns: ColumnReader<'_>) -> Result<(Input, boo
         Some((_, node)) => Some(read::string(node, "the name of a group")?.trim().to_owned()),
         None => each_surface.then(|| target.path()),
     };
-    let cost =
-        find("cost").map_or(Ok(TighteningCost::default()), |(_, node)| tighten::cost(node))?;
+    let cost = find("cost").map_or_else(
+        || Ok(TighteningCost::usual(target.parameter, known)),
+        |(_, node)| tighten::cost(node),
+    )?;
     let input = Input {
         target: *target,
         marginal: law.marginal,

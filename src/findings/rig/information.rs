@@ -14,7 +14,7 @@
 //! the brake constant is never known better than the load cell (a test holds that).
 
 use super::run::cannot_compute;
-use crate::campaign::calibration::plan::{GAIN, INITIAL_SD_K, OFFSET_K};
+use crate::campaign::calibration::plan::INITIAL_SD_K;
 use crate::descent::driven::{
     Drive, Prediction, Reading, Record, Settings, differentiate, predict,
 };
@@ -56,22 +56,6 @@ pub struct Instruments {
     pub temperature_offset_k: f64,
     /// Which nodes have a thermometer: fluid, rotors, housing.
     pub thermometers: [bool; 3],
-}
-
-impl Default for Instruments {
-    /// A load cell and a speedometer for a truck's cab, thermocouples in fluid and housing; assumed.
-    fn default() -> Self {
-        Instruments {
-            every_s: 1.0,
-            force_noise_n: 50.0 * 4.448_221_615_260_5,
-            force_gain: GAIN,
-            speed_noise_m_per_s: 0.05 * 0.3048,
-            speed_gain: GAIN,
-            temperature_noise_k: 2.0 / 1.8,
-            temperature_offset_k: OFFSET_K,
-            thermometers: [true, false, true],
-        }
-    }
 }
 
 impl Instruments {
@@ -363,6 +347,7 @@ pub fn posterior(count: usize, runs: &[&DMatrix<f64>]) -> DMatrix<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::equipment::Equipment;
     use super::*;
     use crate::numerics::elementary::{exp, ln_1p};
 
@@ -371,7 +356,8 @@ mod tests {
     fn analytic_no_set_of_runs_knows_the_brake_better_than_the_load_cell() {
         let study = Study::load(None, &[]).expect("the embedded study");
         let parameters = Parameters::new(&study);
-        let instruments = Instruments::default();
+        let equipment = Equipment::assumed(&study.design).expect("a flight");
+        let instruments = equipment.instruments;
         let runs: Vec<DMatrix<f64>> = [
             (Drive::Force, 22e3, 290.0, 220.0),
             (Drive::Speed, 0.7, 290.0, 210.0),
