@@ -4,7 +4,9 @@ use super::calibrate_arguments::CalibrateArguments;
 use super::figure_files::write_figures;
 use super::output::{say, say_error, say_notes};
 use super::run::quoted;
+use super::watch::{Watch, stop_on_interrupt};
 use super::{Ending, done};
+use crate::campaign::calibration::duplicates::refuse_twice;
 use crate::campaign::calibration::{self, Calibration, Channel, Options, is_hardware};
 use crate::campaign::{self, Progress};
 use crate::descent::driven::Drive;
@@ -12,9 +14,11 @@ use crate::error::{Error, Result};
 use crate::findings::calibration::{self as findings, CalibrationFinding};
 use crate::render;
 use crate::store::{Field, read_number_columns, refuse_obstacle, write_table, write_text};
+use crate::study::measured_run::Acceptance;
 use crate::study::{MeasuredRun, Study, sha256};
 use crate::units;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The findings as one tree.
 const FINDINGS: &str = "findings.json";
@@ -42,12 +46,17 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
         refuse_obstacle(&directory.join(name))?;
     }
     say_notes(&study);
-    let runs = load(&arguments.data)?;
-    let held_out = load(&arguments.hold_out)?;
+    let mut acceptance = Acceptance::default();
+    if arguments.gaps {
+        acceptance.longest_step = f64::INFINITY;
+    }
+    let runs = load(&arguments.data, acceptance)?;
+    let held_out = load(&arguments.hold_out, acceptance)?;
     let mut all: Vec<&MeasuredRun> = runs.iter().map(|(run, _)| run).collect();
     let calibrated = all.clone();
     let unseen: Vec<&MeasuredRun> = held_out.iter().map(|(run, _)| run).collect();
     all.extend(&unseen);
+    refuse_twice(&calibrated, &unseen)?;
     if !arguments.accept {
         let screened = calibration::screen(&study, &all, &options)?;
         if let Some(why) = findings::refusal(&findings::suspicions(&screened)) {
@@ -56,9 +65,17 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
             )));
         }
     }
+    let progress = Arc::new(Progress::default());
+    stop_on_interrupt(&progress)?;
     let found = campaign::with_threads(arguments.threads.asked(), || {
-        calibration::calibrate(&study, &calibrated, &unseen, &options, &Progress::default())
+        let _watch =
+            Watch::start(&progress, calibration::about(&options, &calibrated), "calibrating");
+        calibration::calibrate(&study, &calibrated, &unseen, &options, &progress)
     })??;
+    let Some(found) = found else {
+        say_error("stopped before the posterior was found: nothing is written");
+        return Ok(Ending::Interrupted);
+    };
     let files: Vec<String> =
         runs.iter().chain(&held_out).map(|(_, digest)| digest.clone()).collect();
     let finding = findings::calibration(&study, &found, &all, &files, command(arguments))?;
@@ -68,7 +85,8 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
     write_text(&directory.join(FINDINGS), &format!("{json}\n"))?;
     write_figures(&directory.join(FIGURES), &figures)?;
     write_text(&directory.join(REPORT), &render::calibration_markdown(&finding, &figures))?;
-    if finding.accepted {
+    let written = finding.accepted || finding.converged && arguments.accept;
+    if written {
         write_cards(&directory, &study, &found, &finding)?;
     }
     if arguments.json {
@@ -76,14 +94,20 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
     } else {
         say(&render::calibration_terminal(&finding))?;
     }
-    if !finding.accepted {
-        say_error(&format!("no card is written; the report is in {}", directory.display()));
-        return Ok(Ending::Undecided);
-    }
-    if !arguments.json {
+    if written && !arguments.json {
         say(&format!("\nthe card: {}", directory.join(CARD).display()))?;
     }
-    Ok(Ending::Done)
+    if finding.accepted {
+        return Ok(Ending::Done);
+    }
+    if !written {
+        let way = match finding.converged {
+            true => " (--accept writes it nonetheless)",
+            false => "",
+        };
+        say_error(&format!("no card is written{way}; the report is in {}", directory.display()));
+    }
+    Ok(Ending::Undecided)
 }
 
 fn options(arguments: &CalibrateArguments, study: &Study) -> Result<Options> {
@@ -187,17 +211,11 @@ fn at_least(option: &str, text: &str, quantity: units::Quantity, least: Least) -
 }
 
 /// Runs with the SHA-256 of their files.
-fn load(paths: &[PathBuf]) -> Result<Vec<(MeasuredRun, String)>> {
+fn load(paths: &[PathBuf], acceptance: Acceptance) -> Result<Vec<(MeasuredRun, String)>> {
     let mut runs: Vec<(MeasuredRun, String)> = Vec::new();
     for path in paths {
-        let run = MeasuredRun::load(path, Default::default(), read_number_columns)?;
+        let run = MeasuredRun::load(path, acceptance, read_number_columns)?;
         let bytes = std::fs::read(path).map_err(|reason| Error::file(path, "read", reason, ""))?;
-        if let Some((other, _)) = runs.iter().find(|(other, _)| other.digest == run.digest) {
-            return Err(Error::argument(format!(
-                "{} and {} hold the same readings: each run counts once",
-                other.origin, run.origin
-            )));
-        }
         runs.push((run, sha256(&bytes)));
     }
     Ok(runs)
@@ -263,8 +281,10 @@ fn command(arguments: &CalibrateArguments) -> String {
     words.extend(arguments.heavy_tails.iter().map(|df| format!("--heavy-tails {df}")));
     words.extend(arguments.particles.iter().map(|n| format!("--particles {n}")));
     words.extend(arguments.replicates.iter().map(|n| format!("--replicates {n}")));
-    if arguments.accept {
-        words.push("--accept".to_owned());
+    for (flag, given) in [("--gaps", arguments.gaps), ("--accept", arguments.accept)] {
+        if given {
+            words.push(flag.to_owned());
+        }
     }
     words.extend(arguments.study.set.iter().map(|set| format!("--set {}", quoted(set))));
     words.join(" ")

@@ -35,7 +35,11 @@ pub(super) struct CalibrateArguments {
     /// Noise with heavy tails, Student's t with so many degrees of freedom: outliers count less
     #[arg(long, value_name = "DF", value_parser = degrees_of_freedom)]
     pub heavy_tails: Option<f64>,
-    /// Calibrate even if a unit seems wrong or the card cannot explain the readings
+    /// Take records with gaps as they are, linear across them
+    #[arg(long)]
+    pub gaps: bool,
+    /// Calibrate even if a unit seems wrong or the card cannot explain the readings, and write the card even if the data
+    /// contradict each other
     #[arg(long)]
     pub accept: bool,
     /// Particles of each replicate [default: 1000]

@@ -14,7 +14,7 @@ fn property_the_shipped_campaign_gives_a_card_that_run_can_use() {
     let out = place.path().join("out").display().to_string();
     let (force, power, held) = (run("constant_force"), run("constant_power"), run("hold_out"));
     let common = ["--data", &force, "--data", &power, "--hold-out", &held, "--out", &out, "--json"];
-    let small = ["--particles", "400", "--replicates", "2"];
+    let small = ["--particles", "400", "--replicates", "4"];
     let arguments: Vec<&str> = ["calibrate"].into_iter().chain(common).chain(small).collect();
     let finding = reeldown(&arguments).ended_with(0).json();
     assert_eq!(finding["accepted"], true);
@@ -79,6 +79,8 @@ fn property_bad_options_say_what_was_expected() {
         (vec!["--discrepancy", "-1 %"], "positive"),
         (vec!["--drive", "power"], "force or its speed"),
         (vec!["--data", &data], "counts once"),
+        (vec!["--hold-out", &data], "is no test of the calibration"),
+        (vec!["--sensor-sd", "speed=1e-9 ft/s"], "is rounded to 0.001 ft/s"),
         (vec!["--set", "card=[]"], "list of cards is empty"),
     ] {
         let all: Vec<&str> =
@@ -127,4 +129,35 @@ fn property_instruments_that_err_widen_the_posterior_by_what_is_stated_of_them()
     assert!((0.015..0.035).contains(&gain), "{gain}");
     let sds = [&exact, &wide].map(|f| sd(f, "parameters", strength).expect("the strength"));
     assert!(sds[1] * sds[1] > sds[0] * sds[0] + 0.25 * gain * gain, "{sds:?} {gain}");
+}
+
+/// The second run's brake pays its line out 15 % faster: two brakes, whatever the sampler says.
+#[test]
+fn property_runs_of_two_brakes_are_doubted_and_give_no_card() {
+    let place = Place::new("calibrate-two-brakes");
+    let out = place.path().join("out").display().to_string();
+    let text = std::fs::read_to_string(run("constant_power")).expect("the shipped run");
+    let mut faster = String::new();
+    for line in text.lines() {
+        let mut fields: Vec<String> = line.split(", ").map(str::to_owned).collect();
+        for place in [2, 3] {
+            if let Some(number) = fields.get(place).and_then(|field| field.parse::<f64>().ok()) {
+                fields[place] = format!("{:.3}", 1.15 * number);
+            }
+        }
+        faster += &format!("{}\n", fields.join(", "));
+    }
+    let other = place.path().join("other.csv");
+    std::fs::write(&other, faster).expect("a file");
+    let (force, other) = (run("constant_force"), other.display().to_string());
+    let small = ["--particles", "400", "--replicates", "4", "--json"];
+    let base = ["calibrate", "--data", &force, "--data", &other, "--out", &out];
+    let finding = reeldown(&[&base[..], &small[..]].concat()).ended_with(4).json();
+    assert_eq!(finding["accepted"], false);
+    let doubts = finding["doubts"].as_array().expect("doubts");
+    let doubted = |what: &str| doubts.iter().any(|d| d.as_str().is_some_and(|d| d.contains(what)));
+    assert!(doubted("is not of the brake that the other runs are of"), "{doubts:?}");
+    let headline = finding["statements"][0].as_str().expect("a headline");
+    assert!(headline.contains("may not be believed"), "{headline}");
+    assert!(!place.path().join("out/calibrated.toml").exists());
 }

@@ -14,10 +14,11 @@ use super::plan::{
 };
 use crate::calibration::noise::{Noise, NoiseColumns, add_ln_density, drawn_errors, whiten};
 use crate::calibration::{LeastSquares, LogLikelihood, Whitened};
+use crate::campaign::Progress;
 use crate::descent::driven::{
     Correction, Prediction, Record, Settings, differentiate_corrected, predict_corrected,
 };
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
 use crate::numerics::dual::Dual;
 use crate::numerics::lanes::InstructionSet;
@@ -45,6 +46,15 @@ pub struct RigLikelihood<'a> {
     systematic: Vec<Systematic>,
     noise: Vec<ChannelNoise>,
     settings: Settings,
+    progress: Option<&'a Progress>,
+}
+
+/// Moments of a record that are about the work of one descent.
+const MOMENTS: usize = 50;
+
+/// The work of a likelihood of runs with so many moments, in descents.
+pub(super) fn work(moments: usize) -> usize {
+    moments / MOMENTS + 1
 }
 
 /// A coordinate's place in a point.
@@ -82,6 +92,7 @@ impl<'a> RigLikelihood<'a> {
             systematic,
             noise,
             settings: Settings::default(),
+            progress: None,
         }
     }
 
@@ -92,10 +103,19 @@ impl<'a> RigLikelihood<'a> {
         Self::new(study, runs, systematic, noise)
     }
 
-    /// The same of some of the runs only, by their places, with every other law as it is.
-    pub fn restricted(&self, places: &[usize]) -> Self {
-        let runs = places.iter().filter_map(|&k| self.runs.get(k).cloned()).collect();
+    /// The same, counted by `progress` and stopped by it.
+    pub fn watched(self, progress: &'a Progress) -> Self {
+        RigLikelihood { progress: Some(progress), ..self }
+    }
+
+    /// The same of other runs, with every law as it is.
+    pub fn with_runs(&self, runs: Vec<PlannedRun>) -> Self {
         RigLikelihood { runs, ..self.clone() }
+    }
+
+    /// The same with other noise.
+    pub fn with_noise(self, noise: Vec<ChannelNoise>) -> Self {
+        RigLikelihood { noise, ..self }
     }
 
     /// The instruments' systematic errors.
@@ -485,6 +505,13 @@ impl LogLikelihood for RigLikelihood<'_> {
     }
 
     fn ln_likelihood(&self, z: &Columns, out: &mut [f64]) -> Result<()> {
+        if let Some(progress) = self.progress {
+            if progress.stopping() {
+                return Err(Error::argument("stopped before the posterior was found"));
+            }
+            let moments = self.runs.iter().map(|run| run.record.times_s().len()).sum();
+            progress.advance(z.rows() * work(moments));
+        }
         let starts: Vec<usize> = (0..z.rows()).step_by(BATCH).collect();
         let parts: Vec<Vec<f64>> = starts
             .par_iter()

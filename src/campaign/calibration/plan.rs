@@ -1,13 +1,14 @@
 //! What is calibrated by what: the runs, how they are driven, and the laws of everything that is not on the card.
 
 use super::channel::Channel;
-use crate::calibration::Plan;
 use crate::calibration::noise::{Reading, Series};
+use crate::calibration::{Plan, screening};
 use crate::descent::driven::{Drive, Record};
 use crate::error::{Error, Result};
 use crate::numerics::elementary::exp;
 use crate::physics::parameters::Parameter;
 use crate::study::{MeasuredRun, Study};
+use crate::units::{display, number};
 
 /// A positive quantity that is not known: its logarithm is normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -185,6 +186,9 @@ fn planned_run(run: &MeasuredRun, study: &Study, options: &Options) -> Result<Pl
             drive.name()
         )));
     }
+    for &(channel, sd) in &options.sensor_sd {
+        refuse_finer_than_its_display(run, channel, sd)?;
+    }
     let drive_sd = Channel::of_drive(drive).and_then(|of_drive| {
         options.sensor_sd.iter().find(|(channel, _)| *channel == of_drive).map(|(_, sd)| *sd)
     });
@@ -204,6 +208,27 @@ fn planned_run(run: &MeasuredRun, study: &Study, options: &Options) -> Result<Pl
         channels: channels.into_iter().map(|channel| (channel, series(channel))).collect(),
         record,
     })
+}
+
+/// A sensor cannot err by less than the rounding of what it shows: a stated error below that would have the model blamed
+/// for the last digit.
+fn refuse_finer_than_its_display(run: &MeasuredRun, channel: Channel, sd: f64) -> Result<()> {
+    let step = channel.measured(run).and_then(screening::resolution);
+    // The error of rounding to a step is uniform over it.
+    let Some(least) = step.map(|step| step / 12.0_f64.sqrt()).filter(|least| sd < 0.99 * least)
+    else {
+        return Ok(());
+    };
+    let unit = display(channel.quantity().of_difference());
+    let shown = |si: f64| format!("{} {}", number(unit.shown(si), 3), unit.symbol);
+    Err(Error::argument(format!(
+        "{}: its {} is rounded to {}, which alone errs by {}: a --sensor-sd of {} is impossible, state that at least",
+        run.origin,
+        channel.name(),
+        shown(least * 12.0_f64.sqrt()),
+        shown(least),
+        shown(sd)
+    )))
 }
 
 /// Variance that a reading has from the drive's sensor. Speed goes with force nearly in proportion, moment by moment;

@@ -43,6 +43,8 @@ pub struct Instrument {
     pub step: f64,
 }
 
+/// What the file says of itself, and every result that comes of it after it.
+const SYNTHETIC: &str = "synthetic: made up from a known brake, nothing here was measured";
 /// Share of the line at which a run ends.
 const LINE_SHARE: f64 = 0.97;
 /// Steps of the truth, s: finer than a calibration's.
@@ -101,7 +103,7 @@ pub fn run(
             .collect::<Result<Vec<String>>>()?;
         columns.push((format!("{} [{}]", channel.name(), instrument.unit), shown));
     }
-    let mut text = "time [s]".to_owned();
+    let mut text = format!("# {SYNTHETIC}\ntime [s]");
     for (header, _) in &columns {
         text += &format!(", {header}");
     }
