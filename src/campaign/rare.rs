@@ -46,8 +46,10 @@ pub struct RareEvent {
 /// The design point of an event as a flight.
 #[derive(Debug, Clone)]
 pub struct MostLikelyBreach {
-    /// The point nearest to the medians that breaches.
+    /// The point nearest to the medians that breaches; where those breach themselves, the nearest that does not.
     pub point: DesignPoint,
+    /// Whether the medians breach.
+    pub medians_breach: bool,
     /// The inputs there, SI.
     pub draw: Vec<f64>,
     /// The descent there.
@@ -202,11 +204,13 @@ fn rare_event(
             _ => {}
         }
     }
-    let nearest = points.as_ref().and_then(|found| found.points.first()).cloned();
-    let most_likely = nearest.map(|point| MostLikelyBreach {
-        draw: state.draw(&point.point),
-        flight: state.flight(&point.point),
-        point,
+    let most_likely = points.as_ref().and_then(|found| {
+        // The far side of a region of breaches has the other sign: it is no way into that region.
+        let medians_breach = found.origin_breaches;
+        let near = |point: &&DesignPoint| (point.reliability_index < 0.0) == medians_breach;
+        let point = found.points.iter().find(near)?.clone();
+        let (draw, flight) = (state.draw(&point.point), state.flight(&point.point));
+        Some(MostLikelyBreach { draw, flight, medians_breach, point })
     });
     let agreement = agreement(&estimates, FAMILY_RISK)?;
     debug_assert_eq!(state.limits(), study.limits.len());

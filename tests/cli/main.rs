@@ -3,9 +3,11 @@
 mod acceptance;
 mod artefacts;
 mod calibrate;
+mod checksums;
 mod comparing;
 mod dependence;
 mod determinism;
+mod directories;
 mod disk;
 mod errors;
 mod few_breaches;
