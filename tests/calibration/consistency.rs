@@ -107,12 +107,12 @@ fn property_runs_of_one_brake_agree_and_runs_of_two_do_not() {
     let study = Study::load(None, &[]).expect("the embedded study");
     let three = ["constant_force.csv", "constant_speed.csv", "constant_power.csv"];
     let options = Options::default();
-    // A family of tests at 1 %: two or more of twelve campaigns have less than one chance in a hundred.
+    // A family of tests at 1 %: three or more of 24 campaigns have two chances in a thousand.
     let p: Vec<f64> =
-        (0..12).map(|k| least(&study, &runs(&three, 1.07, 500 + k), &options)).collect();
+        (0..24).map(|k| least(&study, &runs(&three, 1.07, 500 + k), &options)).collect();
     println!("{p:?}");
     let doubted = p.iter().filter(|p| **p < RUN_LEVEL / 3.0).count();
-    assert!(doubted <= 1, "{p:?}");
+    assert!(doubted <= 2, "{p:?}");
     // Brakes 15 % apart, with the discrepancy and without.
     for discrepancy in [options.discrepancy, None] {
         let mut two = runs(&["constant_force.csv"], 0.93, 600);

@@ -15,7 +15,10 @@ fn property_the_shipped_campaign_gives_a_card_that_run_can_use() {
     let (force, power, held) = (run("constant_force"), run("constant_power"), run("hold_out"));
     let common = ["--data", &force, "--data", &power, "--hold-out", &held, "--out", &out, "--json"];
     let small = ["--particles", "400", "--replicates", "4"];
-    let arguments: Vec<&str> = ["calibrate"].into_iter().chain(common).chain(small).collect();
+    // A title with a line end must stay a title.
+    let title = ["--set", "title=\"two\\nlines = 1\""];
+    let arguments: Vec<&str> =
+        ["calibrate"].into_iter().chain(common).chain(small).chain(title).collect();
     let finding = reeldown(&arguments).ended_with(0).json();
     assert_eq!(finding["accepted"], true);
     assert_eq!(finding["runs"].as_array().map(Vec::len), Some(3));
@@ -35,6 +38,12 @@ fn property_the_shipped_campaign_gives_a_card_that_run_can_use() {
     for file in ["report.md", "findings.json", "posterior.parquet", "figures/shrinkage.svg"] {
         assert!(place.path().join("out").join(file).is_file(), "{file}");
     }
+    // The runs say that they were made up, and so does all that comes of them.
+    assert!(finding["runs"].as_array().expect("runs").iter().all(|run| run["synthetic"] == true));
+    let text = |file: &str| String::from_utf8(place.bytes(&format!("out/{file}"))).expect("text");
+    for file in ["report.md", "calibrated.toml", "calibrated_laws.toml"] {
+        assert!(text(file).contains("synthetic"), "{file}");
+    }
     // The same bytes again, on one thread.
     let card = std::fs::read(place.path().join("out/calibrated.toml")).expect("the card");
     let one: Vec<&str> = arguments.iter().copied().chain(["--threads", "1"]).collect();
@@ -47,6 +56,8 @@ fn property_the_shipped_campaign_gives_a_card_that_run_can_use() {
         let inputs = checked["inputs"].as_array().expect("inputs");
         let shear = inputs.iter().find(|i| i["path"] == "fluid.shear_factor").expect("the input");
         let mean = shear["uncertain"]["mean"].as_f64().expect("a mean");
+        // The nominal descent is of the brake that was measured.
+        assert_eq!(shear["value"], shear["uncertain"]["mean"], "{card}");
         let posterior = named("fluid.shear_factor")["posterior"][0].as_f64().expect("a mean");
         assert!((mean - posterior).abs() < 1e-3, "{card}: {mean} {posterior}");
     }
