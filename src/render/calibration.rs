@@ -197,10 +197,12 @@ pub fn calibration_markdown(finding: &CalibrationFinding, figures: &[Figure]) ->
     }
     text += "\n## Do the data agree?\n\nEach run against what the others expect of it (leave one out), the posterior against the \
              card, and each channel's errors against independence (Ljung and Box). Of calibrations in which all is as it is \
-             said to be about one in twenty is doubted.\n\n";
+             said to be about one in ten is doubted.\n\n";
     let tests = finding.consistency.iter().map(|test| {
         [
-            short(&test.of).to_owned(),
+            test.channel.map_or(short(&test.of).to_owned(), |channel| {
+                format!("{}, {channel}", short(&test.of))
+            }),
             test.against.to_owned(),
             format!("{:.1} ({})", test.test.statistic, test.test.degrees),
             number(test.test.p, 2),

@@ -13,15 +13,16 @@ pub(super) fn agreement(
     found: &Calibration<'_>,
 ) -> (Vec<AgreementFinding>, Vec<String>) {
     let (mut tests, mut doubts) = (Vec::new(), Vec::new());
-    let mut add = |of: String, against, test: ChiSquared, least, doubt: String| {
-        if test.p < least {
+    let mut add = |finding: AgreementFinding, doubt: String| {
+        let test = finding.test;
+        if test.p < finding.least {
             let p = number(test.p, 2);
             doubts.push(format!(
                 "{doubt} (chi-squared {:.1} of {}, p {p})",
                 test.statistic, test.degrees
             ));
         }
-        tests.push(AgreementFinding { of, against, test, least });
+        tests.push(finding);
     };
     let consistency = &found.consistency;
     // So many chances of a false alarm share one level.
@@ -36,7 +37,8 @@ pub(super) fn agreement(
             "{} {doubt}: another brake, another fluid, or an instrument that has moved",
             run.name
         );
-        add(run.name.clone(), against, run.test, share(RUN_LEVEL, runs.len()), doubt);
+        let (of, least) = (run.name.clone(), share(RUN_LEVEL, runs.len()));
+        add(AgreementFinding { of, channel: None, against, test: run.test, least }, doubt);
     }
     let farthest = consistency.farthest.map_or(String::new(), |(coordinate, deviations)| {
         format!(
@@ -46,13 +48,29 @@ pub(super) fn agreement(
         )
     });
     let doubt = format!("the posterior is not where the card says that the brake is{farthest}");
-    add("posterior".to_owned(), "the card", consistency.prior, PRIOR_LEVEL, doubt);
+    let card = AgreementFinding {
+        of: "posterior".to_owned(),
+        channel: None,
+        against: "the card",
+        test: consistency.prior,
+        least: PRIOR_LEVEL,
+    };
+    add(card, doubt);
     let white = &consistency.white;
     for channel in white {
-        let of = format!("{} of {}", channel.channel.name(), channel.run);
-        let doubt =
-            format!("the errors of {of} follow each other: the noise is not what it is taken for");
-        add(of, "independent errors", channel.test, share(WHITE_LEVEL, white.len()), doubt);
+        let name = channel.channel.name();
+        let doubt = format!(
+            "the errors of {name} in {} follow each other: the noise is not what it is taken for",
+            channel.run
+        );
+        let finding = AgreementFinding {
+            of: channel.run.clone(),
+            channel: Some(name),
+            against: "independent errors",
+            test: channel.test,
+            least: share(WHITE_LEVEL, white.len()),
+        };
+        add(finding, doubt);
     }
     for (channel, deviations) in &consistency.strays {
         doubts.push(format!(

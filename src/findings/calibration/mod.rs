@@ -89,8 +89,10 @@ pub struct RunFinding {
 /// A test of whether the data agree with something.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AgreementFinding {
-    /// What is tested.
+    /// What is tested: a run, or the posterior.
     pub of: String,
+    /// Its channel, if only that is.
+    pub channel: Option<&'static str>,
     /// Against what.
     pub against: &'static str,
     /// Chi-squared statistic, its degrees of freedom, and the probability of so much or more.
