@@ -62,9 +62,9 @@ pub(super) fn row_digest(study: &Study) -> String {
     rows.tighten.design.clear();
     rows.epistemic = EpistemicPlan { outer: 0, inner: 0 };
     for input in &mut rows.inputs {
-        input.cost = Default::default();
         // When it becomes known, and with what it is looked at, moves no sample.
         input.known = crate::study::Known::Never;
+        input.cost = crate::study::TighteningCost::usual(input.target.parameter, input.known);
         input.group = None;
         input.nature = Nature::Unknown;
     }

@@ -130,7 +130,7 @@ fn assemble_with(
     let (
         Some(title),
         Some(model),
-        Some((design, stated)),
+        Some((mut design, stated)),
         Some(limits),
         Some(requirement),
         Some(sampling),
@@ -173,6 +173,14 @@ fn assemble_with(
     let mut notes = notes(&design, &inputs, &stated);
     notes.extend(card.together.iter().filter_map(unused));
     notes.extend(epistemic::shared_readings(&inputs));
+    if let Some(prior) = &prior {
+        let moved = to_the_posterior(&mut design, &inputs, prior, &stated);
+        if moved > 0 {
+            notes.push(format!(
+                "{moved} calibrated inputs have their posterior means as nominal values: the card before them had others"
+            ));
+        }
+    }
     Ok(Study {
         title,
         model,
@@ -199,6 +207,37 @@ fn assemble_with(
         card_texts: card_texts.into_iter().map(|card| (card.origin, card.text)).collect(),
         overrides: overrides.iter().map(|statement| statement.text().to_owned()).collect(),
     })
+}
+
+/// Sets the nominal value of every input whose law a calibration changed to that law's mean, unless the study states
+/// one; how many. The nominal descent is then of the brake that was measured, not of the one that was designed.
+fn to_the_posterior(
+    design: &mut Design<f64>,
+    inputs: &[Input],
+    prior: &Study,
+    stated: &[Stated],
+) -> usize {
+    let kept = |target: Target| {
+        let before = prior.inputs.iter().find(|input| input.target == target);
+        let same = |before: &Input, now: &Input| before.law_canonical == now.law_canonical;
+        let whole = Target::whole(target.parameter);
+        let is_stated = stated.iter().any(|s| s.target == target || s.target == whole);
+        move |now: &Input| is_stated || before.is_some_and(|before| same(before, now))
+    };
+    let mut moved = design.clone();
+    let mut count = 0;
+    for input in inputs {
+        let mean = input.marginal.mean();
+        if mean.is_finite() && !kept(input.target)(input) {
+            moved.set(input.target, mean);
+            count += 1;
+        }
+    }
+    if moved.validate().is_err() {
+        return 0;
+    }
+    *design = moved;
+    count
 }
 
 type CardOverride<'o> = (&'o Override, String, String);

@@ -116,8 +116,10 @@ fn input(statement: &Statement, files: &mut dyn Files) -> Result<(Input, bool)> 
         Some((_, node)) => Some(pairs::group(node, Some(*target))?),
         None => each_surface.then(|| target.path()),
     };
-    let cost =
-        find("cost").map_or(Ok(TighteningCost::default()), |(_, node)| tighten::cost(node))?;
+    let cost = find("cost").map_or_else(
+        || Ok(TighteningCost::usual(target.parameter, known)),
+        |(_, node)| tighten::cost(node),
+    )?;
     let input = Input {
         target: *target,
         marginal: law.marginal,

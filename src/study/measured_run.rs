@@ -4,6 +4,7 @@
 //! # The file
 //! ```text
 //! # comments start with a number sign; empty lines are skipped
+//! # synthetic: a comment that begins so says that the run was made up, and every result of it will say so
 //! time [s], force [lbf], speed [ft/s], line [ft], fluid [°F], rotor [°F], housing [°F]
 //! 0, 6010, 1.52, 0, 60.1, 60.0, 59.9
 //! ```
@@ -38,8 +39,12 @@ pub const CHANNELS: [(&str, Quantity, &[&str]); 7] = [
     ("housing", Quantity::Temperature, &["housing_temperature_k"]),
 ];
 
-/// A step in time this many times the usual one is a gap.
+/// A step in time this many times the usual one about it is a gap.
 const GAP: f64 = 5.0;
+/// Steps before and after one that tell the usual one there: a record may be logged faster in one part than in another.
+const ABOUT: usize = 5;
+/// Share of the largest reading by which a force or a speed may lie below zero: an instrument's zero at rest.
+const BELOW_ZERO: f64 = 0.01;
 /// A name that differs from a channel's in so many letters is a misspelling of it.
 const MISSPELT: usize = 2;
 /// The hottest that an instrument can have read, K.
@@ -48,7 +53,7 @@ const HOTTEST_K: f64 = 2000.0;
 /// What is accepted of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Acceptance {
-    /// Longest step in time, as a multiple of the file's median step; infinite accepts gaps.
+    /// Longest step in time, as a multiple of the median step about it; infinite accepts gaps.
     pub longest_step: f64,
 }
 
@@ -65,6 +70,8 @@ pub struct MeasuredRun {
     pub origin: String,
     /// SHA-256 of the numbers in SI, in hexadecimal: independent of units, comments and spacing.
     pub digest: String,
+    /// Whether the file says that it was made up.
+    pub synthetic: bool,
     /// Times, s, strictly increasing.
     pub time_s: Vec<f64>,
     /// Pull on the line, N.
@@ -138,7 +145,9 @@ impl MeasuredRun {
             let name = drive.name();
             return Err(Error::argument(format!("{} holds no column `{name}`", self.origin)));
         };
-        Record::new(drive, self.time_s.clone(), values.clone())
+        // What an instrument reads below its zero at rest pulls no line.
+        let values = values.iter().map(|value| value.max(0.0)).collect();
+        Record::new(drive, self.time_s.clone(), values)
     }
 
     /// What a reader should know about how the file was read.
@@ -167,6 +176,7 @@ impl MeasuredRun {
         MeasuredRun {
             origin: origin.to_owned(),
             digest: digest::of_text(&canonical),
+            synthetic: false,
             time_s: time.unwrap_or_default(),
             force_n: force,
             speed_m_per_s: speed,
@@ -179,16 +189,18 @@ impl MeasuredRun {
     }
 }
 
+/// Whether a line is a comment that says that the run was made up.
+fn says_synthetic(line: &str) -> bool {
+    let comment = line.trim_start_matches('\u{feff}').trim_start().strip_prefix('#');
+    comment.is_some_and(|words| words.trim_start().to_lowercase().starts_with("synthetic"))
+}
+
 /// Why a value cannot have been read on an instrument, and what could.
 fn impossible(quantity: Quantity, value: f64) -> Option<(&'static str, String)> {
     let (problem, expected) = match quantity {
         Quantity::Temperature if !(value > 0.0 && value < HOTTEST_K) => (
             "this temperature is impossible",
             "expected one above absolute zero and below 2000 K: is the unit right?",
-        ),
-        Quantity::Force | Quantity::Speed if value < 0.0 => (
-            "a line cannot be pushed",
-            "expected zero or more: leave out readings from before and after the pull",
         ),
         Quantity::Length if value < 0.0 => {
             ("less than no line cannot be out", "expected zero or more")
@@ -198,9 +210,23 @@ fn impossible(quantity: Quantity, value: f64) -> Option<(&'static str, String)> 
     Some((problem, expected.to_owned()))
 }
 
+/// The first reading that is farther below zero than an instrument at rest, of a force or a speed.
+fn pushed(quantity: Quantity, values: &[f64]) -> Option<usize> {
+    let pulls = matches!(quantity, Quantity::Force | Quantity::Speed);
+    let least = -BELOW_ZERO * values.iter().copied().fold(0.0, f64::max);
+    values.iter().position(|value| *value < least).filter(|_| pulls)
+}
+
+/// What a reading below zero says, and what is expected.
+const PUSHED: (&str, &str) = (
+    "a line cannot be pushed",
+    "expected zero or more, or no farther below it than 1 % of the largest reading: leave out readings from before and after \
+     the pull",
+);
+
 /// Where the time goes wrong: the row, the problem, what was expected, help.
 fn irregular(times: &[f64], longest: f64) -> Option<(usize, String, String, Option<String>)> {
-    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     if let Some(k) = steps.iter().position(|step| *step <= 0.0) {
         let (before, now) = (number(times[k], 10), number(times[k + 1], 10));
         let problem = if times[k + 1] == times[k] {
@@ -210,13 +236,22 @@ fn irregular(times: &[f64], longest: f64) -> Option<(usize, String, String, Opti
         };
         return Some((k + 1, problem, "expected later times on later lines".to_owned(), None));
     }
-    let unsorted = steps.clone();
-    steps.sort_by(f64::total_cmp);
-    let median = *steps.get(steps.len() / 2)?;
-    let k = unsorted.iter().position(|step| *step > longest * median)?;
+    let median = |steps: &[f64]| {
+        let mut sorted = steps.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        sorted.get(sorted.len() / 2).copied()
+    };
+    let usual = |k: usize| {
+        let before = median(&steps[k.saturating_sub(ABOUT)..k]);
+        let after = median(&steps[k + 1..(k + 1 + ABOUT).min(steps.len())]);
+        before.into_iter().chain(after).reduce(f64::max)
+    };
+    let (k, median) = (0..steps.len())
+        .filter_map(|k| Some((k, usual(k)?)))
+        .find(|(k, usual)| steps[*k] > longest * usual)?;
     let problem = format!(
         "a gap of {} s before this reading, where the usual step is {} s",
-        number(unsorted[k], 6),
+        number(steps[k], 6),
         number(median, 6)
     );
     let expected = format!("expected steps of at most {} times the usual one", number(longest, 6));
@@ -259,7 +294,7 @@ impl Csv {
             }
         }
         let mut values: [Option<Vec<f64>>; CHANNELS.len()] = Default::default();
-        let mut time_spans = Vec::new();
+        let mut spans: [Vec<std::ops::Range<usize>>; CHANNELS.len()] = Default::default();
         for (fields, span) in lines {
             if fields.len() != columns.len() {
                 let problem = format!(
@@ -272,9 +307,7 @@ impl Csv {
             }
             for ((channel, unit), (field, span)) in columns.iter().zip(fields) {
                 let value = self.value(*channel, unit, &field, span.clone())?;
-                if *channel == 0 {
-                    time_spans.push(span);
-                }
+                spans[*channel].push(span);
                 values[*channel].get_or_insert_default().push(value);
             }
         }
@@ -284,9 +317,16 @@ impl Csv {
             return Err(self.place(header_span).error(problem, "expected two at least below this"));
         }
         if let Some((row, problem, expected, help)) = irregular(times, acceptance.longest_step) {
-            return Err(self.place(time_spans[row].clone()).error_with(problem, expected, help));
+            return Err(self.place(spans[0][row].clone()).error_with(problem, expected, help));
         }
-        Ok(MeasuredRun::new(&self.text.origin, values))
+        for (channel, (_, quantity, _)) in CHANNELS.iter().enumerate() {
+            let column = values[channel].as_deref().unwrap_or_default();
+            if let Some(row) = pushed(*quantity, column) {
+                return Err(self.place(spans[channel][row].clone()).error(PUSHED.0, PUSHED.1));
+            }
+        }
+        let synthetic = self.text.text.lines().any(says_synthetic);
+        Ok(MeasuredRun { synthetic, ..MeasuredRun::new(&self.text.origin, values) })
     }
 
     /// The lines that hold something, as fields, with the bytes they stand on.
@@ -436,6 +476,9 @@ fn from_columns(
                 return Err(wrong(format!("row {} of {column}: {problem}: {expected}", row + 1)));
             }
             series.push(value);
+        }
+        if let Some(row) = pushed(quantity, &series) {
+            return Err(wrong(format!("row {} of {column}: {}: {}", row + 1, PUSHED.0, PUSHED.1)));
         }
         values[channel] = Some(series);
         held[channel] = Some(column);

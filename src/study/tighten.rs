@@ -1,6 +1,7 @@
 //! What may be tightened at what cost, and which design values may move: `cost` of an input, `[trade]`
 //! and `[tighten]` of a study.
 
+use super::Known;
 use super::document::{Node, Value};
 use super::mistakes::Mistakes;
 use super::read::{self, Section};
@@ -31,9 +32,14 @@ pub enum TighteningCost {
     None,
 }
 
-impl Default for TighteningCost {
-    fn default() -> Self {
-        TighteningCost::PerHalving(1.0)
+impl TighteningCost {
+    /// The cost of an input of which none is stated: one for each halving, and none at all of what nobody sells. The
+    /// weather of the day and the error of the model itself are no tolerances.
+    pub fn usual(parameter: Parameter, known: Known) -> Self {
+        match known == Known::OnTheDay || parameter == Parameter::FluidAveragingOffset {
+            true => TighteningCost::None,
+            false => TighteningCost::PerHalving(1.0),
+        }
     }
 }
 

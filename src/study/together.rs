@@ -127,7 +127,13 @@ fn read_one(statement: &Node, files: &mut dyn Files) -> Result<Together> {
         Some(node) => pairs::group(node, None)?,
         None => format!("joint sample of {} parameters ({name})", members.len()),
     };
-    let cost = section.get("cost").map_or(Ok(TighteningCost::default()), tighten::cost)?;
+    // They are bought together: all of them, or nothing.
+    let usual = members
+        .iter()
+        .map(|(target, _)| TighteningCost::usual(target.parameter, known))
+        .find(|cost| *cost != TighteningCost::None)
+        .unwrap_or(TighteningCost::None);
+    let cost = section.get("cost").map_or(Ok(usual), tighten::cost)?;
     let key = Key { name: name.to_owned(), place: file.place.clone() };
     let (file, sha256) = (name.to_owned(), content.sha256);
     Ok(Together { members, known, nature, source, group, cost, file, sha256, unused, key })

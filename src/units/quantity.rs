@@ -166,6 +166,9 @@ impl Quantity {
             Quantity::Area => &["m²", "ft²"],
             Quantity::HeatCapacity => &["J/K", "BTU/°F"],
             Quantity::Conductance => &["W/K", "BTU/h/°F"],
+            Quantity::Conductivity => &["W/m/K"],
+            Quantity::VolumetricHeatCapacity => &["MJ/m³/K"],
+            Quantity::Expansion => &["%/K", "1/K"],
         }
     }
 

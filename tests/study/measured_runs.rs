@@ -51,7 +51,7 @@ fn property_every_mistake_is_named_with_its_line() {
         (&format!("{head}{good}3,x,1.5\n"), "run.csv:5:3: \"x\" is not a finite number"),
         (&format!("{head}{good}3,6000 lbf,1.5\n"), "run.csv:5:3: \"6000 lbf\" is not a finite"),
         (&format!("{head}{good}3,1e999,1.5\n"), "run.csv:5:3: \"1e999\" is not a finite number"),
-        (&format!("{head}{good}3,-2,1.5\n"), "run.csv:5:3: a line cannot be pushed"),
+        (&format!("{head}{good}3,-200,1.5\n"), "run.csv:5:3: a line cannot be pushed"),
         (&format!("{head}{good}2,6000,1.5\n"), "run.csv:5:1: the time 2 s is there twice"),
         (&format!("{head}{good}1.5,6000,1\n"), "run.csv:5:1: the time goes back from 2 s to 1.5 s"),
         (&format!("{head}{good}9,6000,1.5\n"), "run.csv:5:1: a gap of 7 s before this reading"),
@@ -65,6 +65,32 @@ fn property_every_mistake_is_named_with_its_line() {
     let gap = format!("{head}{good}9,6000,1.5\n");
     let any = Acceptance { longest_step: f64::INFINITY };
     assert_eq!(MeasuredRun::from_csv("run.csv", &gap, any).unwrap().time_s.len(), 4);
+}
+
+/// A load cell at rest reads a little below zero, and a logger may change its rate: neither is a mistake.
+#[test]
+fn property_an_instrument_s_zero_and_two_logging_rates_are_no_mistakes() {
+    let rest = "time [s], force [lbf], speed [ft/s]\n0,-2,0\n1,6000,1\n2,6000,1\n";
+    let run = MeasuredRun::from_csv("run.csv", rest, Default::default()).unwrap();
+    let force = run.force_n.as_ref().unwrap();
+    assert!((force[0] + 2.0 * 4.448_221_615_260_5).abs() < 1e-12, "{}", force[0]);
+    // It drives as nothing at all.
+    assert_eq!(run.record(Drive::Force).unwrap().values()[0], 0.0);
+    let mut rates = "time [s], force [lbf]\n".to_owned();
+    let slow = (0..20).map(|k| f64::from(k) * 0.1).chain((2..40).map(f64::from));
+    slow.for_each(|time| rates += &format!("{time}, 6000\n"));
+    assert!(MeasuredRun::from_csv("run.csv", &rates, Default::default()).is_ok());
+    // The same record with ten seconds lost in its slow part, and with two in its fast one.
+    for lost in [
+        "21, 6000\n22, 6000\n23, 6000\n24, 6000\n25, 6000\n",
+        "0.5, 6000\n0.6, 6000\n0.7, 6000\n0.8, 6000\n0.9, 6000\n",
+    ] {
+        let gap = rates.replace("0.6000000000000001", "0.6").replace("0.7000000000000001", "0.7");
+        assert!(gap.contains(lost), "{gap}");
+        let gap = gap.replace(lost, "");
+        let error = MeasuredRun::from_csv("run.csv", &gap, Default::default()).unwrap_err();
+        assert!(error.to_string().contains("a gap of"), "{error}");
+    }
 }
 
 #[test]
