@@ -26,6 +26,11 @@
 //! `ē` the mean of the fluidity `e = exp(−B/T)` across the film: nothing has to be iterated for.
 //! With a thermal expansion `α` the density, and `ρ ν` with it, falls as `exp(−α (T − 25 °C))`, in the group too.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "an index is a point in space, of several fields at once"
+)]
+
 use super::design::Design;
 use super::fluid::{CONVERGED, MORE_STEPS};
 use super::parameters::Parameter;
@@ -415,44 +420,52 @@ pub fn speed_of<R: Real, const P: usize>(
     let Some(power) = cross else {
         return thin;
     };
+    // ln X = ln ω + ln(group per speed) at every radius. A fluid that hardly thins has no thick asymptote: it is put far to
+    // the left.
+    let least = R::constant(-1e-300);
+    let mut groups = [zero; P];
+    let mut parts = [zero; P];
     let mut thick = zero;
     for i in 0..P {
         let group = (film.cross_time_s_per_m * faces.radius_m[i]) * thickening[i];
-        // A fluid that hardly thins has no thick asymptote: it is put far to the left.
-        let group = -(-group).min(R::constant(-1e-300));
-        thick = (faces.torque[i] * thickening[i]).mul_add(one / group.power(power), thick);
+        groups[i] = (-(-group).min(least)).ln();
+        parts[i] = faces.torque[i] * thickening[i];
+        thick = parts[i].mul_add((-(power * groups[i])).exp(), thick);
     }
-    let thick = ((target / thick).ln() / (order - power)).exp();
+    let aim = target.ln();
+    let thick = (aim - thick.ln()) / (order - power);
     // The larger of the two: −min(−a, −b).
-    let mut speed = -(-thin).min(-thick);
+    let mut speed = -(-thin.ln()).min(-thick);
     let step = |speed: R| {
-        let shear = Shear::new(film, faces, thickening, speed, cross);
-        let mut lean = zero;
+        let (mut stiffness, mut lean) = (zero, zero);
         for i in 0..P {
-            let part = (faces.torque[i] * thickening[i]) * shear.thinning[i];
-            lean = part.mul_add(shear.exponent[i], lean);
+            let grown = (power * (speed + groups[i])).exp();
+            let thinning = one / (one + grown);
+            let part = parts[i] * thinning;
+            stiffness = stiffness + part;
+            lean = (part * thinning).mul_add(grown, lean);
         }
-        let slope = order + lean / shear.stiffness;
-        let miss = target.ln() - (order * speed.ln() + shear.stiffness.ln());
+        let slope = order - power * (lean / stiffness);
+        let miss = aim - order.mul_add(speed, stiffness.ln());
         miss / slope
     };
     let mut last = one;
     for _ in 0..SPEED_STEPS {
         last = step(speed);
-        speed = speed * last.exp();
+        speed = speed + last;
     }
     for _ in 0..MORE_STEPS {
         if last.beyond(CONVERGED).is_zero() {
             break;
         }
         last = step(speed).beyond(CONVERGED);
-        speed = speed * last.exp();
+        speed = speed + last;
     }
-    speed
+    speed.exp()
 }
 
 /// Newton steps of [`speed_of`] that are always taken; the convergence is monotone, and in the end quadratic.
-const SPEED_STEPS: usize = 8;
+const SPEED_STEPS: usize = 6;
 
 #[cfg(test)]
 #[path = "film_test.rs"]

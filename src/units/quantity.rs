@@ -148,6 +148,30 @@ impl Quantity {
         }
     }
 
+    /// Units in which an engineer writes it, the usual one first and an SI one among them.
+    pub fn usual_units(self) -> &'static [&'static str] {
+        match self {
+            Quantity::Number => &[],
+            Quantity::Length => &["in", "mm", "m"],
+            Quantity::Time => &["s", "min"],
+            Quantity::Temperature | Quantity::TemperatureDifference => &["°F", "°C", "K"],
+            Quantity::Speed => &["ft/s", "m/s"],
+            Quantity::RotationalSpeed => &["rpm", "rad/s"],
+            Quantity::KinematicViscosity => &["cSt", "m²/s"],
+            Quantity::Density => &["kg/m³", "lb/ft³"],
+            Quantity::Mass => &["kg", "lb"],
+            Quantity::Force => &["lbf", "N"],
+            Quantity::Power => &["kW", "hp", "W"],
+            Quantity::Inertia => &["kg·m²", "slug·ft²"],
+            Quantity::Area => &["m²", "ft²"],
+            Quantity::HeatCapacity => &["J/K", "BTU/°F"],
+            Quantity::Conductance => &["W/K", "BTU/h/°F"],
+            Quantity::Conductivity => &["W/m/K"],
+            Quantity::VolumetricHeatCapacity => &["MJ/m³/K"],
+            Quantity::Expansion => &["%/K", "K⁻¹"],
+        }
+    }
+
     /// A value as an engineer writes it: "0.062 in".
     pub fn example(self) -> &'static str {
         match self {

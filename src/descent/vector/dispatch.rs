@@ -30,7 +30,7 @@ pub(super) fn dispatch(
         InstructionSet::Avx2 if set.is_available() => unsafe {
             avx2(model, attempt, batch, results, doubtful)
         },
-        _ => with_lanes::<f64>(model, attempt, batch, results, doubtful),
+        _ => with_lanes::<f64, f64>(model, attempt, batch, results, doubtful),
     }
 }
 
@@ -43,8 +43,8 @@ fn avx512(
     results: &mut [Result<Outcome, Fault>],
     doubtful: &mut Vec<usize>,
 ) -> Counts {
-    type Octets = crate::numerics::lanes::Pair<crate::numerics::lanes::avx512::Octet>;
-    with_lanes::<Octets>(model, attempt, batch, results, doubtful)
+    use crate::numerics::lanes::{Pair, avx512::Octet};
+    with_lanes::<Pair<Octet>, Octet>(model, attempt, batch, results, doubtful)
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -56,12 +56,13 @@ fn avx2(
     results: &mut [Result<Outcome, Fault>],
     doubtful: &mut Vec<usize>,
 ) -> Counts {
-    type Quartets = crate::numerics::lanes::Pair<crate::numerics::lanes::avx2::Quartet>;
-    with_lanes::<Quartets>(model, attempt, batch, results, doubtful)
+    use crate::numerics::lanes::{Pair, avx2::Quartet};
+    with_lanes::<Pair<Quartet>, Quartet>(model, attempt, batch, results, doubtful)
 }
 
+/// Runs the kernel over lanes; the detailed models over narrower ones, whose states are wide enough by themselves.
 #[inline(always)]
-fn with_lanes<V: Lanes>(
+fn with_lanes<V: Lanes, W: Lanes>(
     model: Model,
     attempt: Attempt,
     batch: Batch,
@@ -72,16 +73,16 @@ fn with_lanes<V: Lanes>(
         Model::Dynamic => run::<V, Dynamic<V>, 7>(attempt, batch, results, doubtful),
         Model::QuasiSteady => run::<V, QuasiSteady<V>, 5>(attempt, batch, results, doubtful),
         Model::DetailedDynamic if attempt.fine_space => {
-            run::<V, detailed::Dynamic<V, 7, 4>, 33>(attempt, batch, results, doubtful)
+            run::<W, detailed::Dynamic<W, 7, 4>, 33>(attempt, batch, results, doubtful)
         }
         Model::DetailedQuasiSteady if attempt.fine_space => {
-            run::<V, detailed::QuasiSteady<V, 7, 4>, 31>(attempt, batch, results, doubtful)
+            run::<W, detailed::QuasiSteady<W, 7, 4>, 31>(attempt, batch, results, doubtful)
         }
         Model::DetailedDynamic => {
-            run::<V, detailed::Dynamic<V, 5, 3>, 20>(attempt, batch, results, doubtful)
+            run::<W, detailed::Dynamic<W, 6, 3>, 23>(attempt, batch, results, doubtful)
         }
         Model::DetailedQuasiSteady => {
-            run::<V, detailed::QuasiSteady<V, 5, 3>, 18>(attempt, batch, results, doubtful)
+            run::<W, detailed::QuasiSteady<W, 6, 3>, 21>(attempt, batch, results, doubtful)
         }
     }
 }

@@ -232,9 +232,9 @@ fn analytic_the_detailed_solves_invert_their_jacobians() {
             for (line, v) in [(0.0, 0.4), (60.0, 0.9), (150.0, 0.3)] {
                 let motion = [line, 4.7, v];
                 let off = [
-                    detailed_residual::<detailed::Dynamic<f64, 5, 3>, 20>(thinning, clock, &motion),
+                    detailed_residual::<detailed::Dynamic<f64, 6, 3>, 23>(thinning, clock, &motion),
                     detailed_residual::<detailed::Dynamic<f64, 7, 4>, 33>(thinning, clock, &motion),
-                    detailed_residual::<detailed::QuasiSteady<f64, 5, 3>, 18>(
+                    detailed_residual::<detailed::QuasiSteady<f64, 6, 3>, 21>(
                         thinning,
                         clock,
                         &motion[..1],
@@ -245,7 +245,8 @@ fn analytic_the_detailed_solves_invert_their_jacobians() {
                         &motion[..1],
                     ),
                 ];
-                assert!(off.iter().all(|&off| off < 2e-5), "thinning {thinning}, {line}: {off:?}");
+                // Temperatures that jump by 36 K from point to point make rates of 1e3 1/s: the differences are worth a digit less.
+                assert!(off.iter().all(|&off| off < 2e-4), "thinning {thinning}, {line}: {off:?}");
             }
         }
     }

@@ -61,7 +61,7 @@ mod thermal;
 
 pub use crate::numerics::lanes::InstructionSet;
 pub use batch::{Batch, Draws};
-pub use settings::{Counts, Settings, default_tolerance};
+pub use settings::{Counts, Settings, TOLERANCES, default_tolerance};
 
 use super::model::Model;
 use super::outcome::{Fault, Outcome};

@@ -44,10 +44,10 @@ pub fn differentiate(
             run::<detailed::QuasiSteady<Lane, 7, 4>, 31>(attempt, coefficients, plain)
         }
         Kind::DetailedDynamic => {
-            run::<detailed::Dynamic<Lane, 5, 3>, 20>(attempt, coefficients, plain)
+            run::<detailed::Dynamic<Lane, 6, 3>, 23>(attempt, coefficients, plain)
         }
         Kind::DetailedQuasiSteady => {
-            run::<detailed::QuasiSteady<Lane, 5, 3>, 18>(attempt, coefficients, plain)
+            run::<detailed::QuasiSteady<Lane, 6, 3>, 21>(attempt, coefficients, plain)
         }
     }
 }

@@ -256,7 +256,7 @@ macro_rules! points {
         }
     };
 }
-points!(5, 3, 5);
+points!(6, 3, 5);
 points!(7, 4, 7);
 
 /// A model with its points laid out.
