@@ -229,8 +229,8 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
         )
     }
 
-    /// What became of a lane that has finished, and whether it is worth a second look: it is impossible, or its
-    /// peaks are in doubt.
+    /// What became of a lane that has finished, and whether it is worth a second look: it is impossible, its peaks are
+    /// in doubt, or its points in space are too few.
     #[inline(always)]
     pub fn result(&self, lane: usize) -> (Result<Outcome, Fault>, bool) {
         let of = |value: &V| value.lanes()[lane];
@@ -252,7 +252,8 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
         } else {
             Err(Fault::NotFinite)
         };
-        (result, result.is_err() || self.peaks.doubtful(lane))
+        let coarse = !self.attempt.fine_space && !self.possible[lane].resolves(&values);
+        (result, result.is_err() || self.peaks.doubtful(lane) || coarse)
     }
 }
 
