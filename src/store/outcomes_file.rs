@@ -7,7 +7,9 @@ use crate::descent::{Fault, OutcomeQuantity};
 use crate::error::{Error, Result};
 use crate::outcomes::OutcomeTable;
 use crate::study::Study;
-use polars::prelude::{Column, DataFrame, Float64Chunked, IntoColumn, ParquetReader, SerReader};
+use polars::prelude::{
+    Column, DataFrame, Float64Chunked, IntoColumn, ParquetReader, Schema, SerReader,
+};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -18,6 +20,8 @@ const SAMPLE: &str = "sample";
 const DEPLOYED: &str = "deployed";
 /// Column of the fault's name, null where there is none.
 const FAULT: &str = "fault";
+/// Footer entry of a table that does not begin with sample 0: the index of its first one.
+pub const FIRST_SAMPLE: &str = "first_sample";
 /// Prefix of this program's footer keys.
 const PREFIX: &str = "reeldown.";
 
@@ -120,9 +124,27 @@ impl OutcomesWriter {
     /// # Errors
     /// If it cannot be made.
     pub fn create(path: &Path, study: &Study, parentage: &Parentage) -> Result<Self> {
+        Self::start(path, study, parentage, TableWriter::create_durable)
+    }
+
+    /// Starts a file of which nothing is left if it is not finished, and which others may be writing as well: the
+    /// last one to finish is the one that is read.
+    ///
+    /// # Errors
+    /// If it cannot be made.
+    pub fn create_whole(path: &Path, study: &Study, parentage: &Parentage) -> Result<Self> {
+        Self::start(path, study, parentage, TableWriter::create)
+    }
+
+    fn start(
+        path: &Path,
+        study: &Study,
+        parentage: &Parentage,
+        create: impl FnOnce(&Path, &Schema, Vec<(String, String)>) -> Result<TableWriter>,
+    ) -> Result<Self> {
         let layout = Layout::new(study);
         let schema = layout.frame(&[]).map_err(|reason| unusable(path, reason))?;
-        let writer = TableWriter::create_durable(path, schema.schema(), parentage.entries())?;
+        let writer = create(path, schema.schema(), parentage.entries())?;
         Ok(OutcomesWriter { layout, writer })
     }
 
@@ -148,6 +170,7 @@ impl OutcomesWriter {
 #[derive(Debug)]
 pub struct OutcomesReader {
     path: PathBuf,
+    first: u64,
     rows: u64,
     parentage: Parentage,
     checksums: Checksums,
@@ -193,7 +216,30 @@ impl OutcomesReader {
             return Err(unusable(path, "its footer has no entry of reeldown's"));
         }
         let parentage = Parentage(parentage);
-        Ok(OutcomesReader { path: path.to_owned(), rows, parentage, checksums })
+        let first = parentage.0.get(FIRST_SAMPLE).map_or(Ok(0), |first| first.parse::<u64>());
+        let first = first.ok().filter(|first| first.checked_add(rows).is_some());
+        let first = first.ok_or_else(|| unusable(path, "its footer has no right first sample"))?;
+        Ok(OutcomesReader { path: path.to_owned(), first, rows, parentage, checksums })
+    }
+
+    /// Where the file is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Index of its first sample.
+    pub fn first(&self) -> u64 {
+        self.first
+    }
+
+    /// Verifies every row group.
+    ///
+    /// # Errors
+    /// If one does not match its checksum, or the file cannot be read.
+    pub fn verify(&self) -> Result<()> {
+        let mut file = File::open(&self.path).map_err(|reason| unusable(&self.path, reason))?;
+        let verified = self.checksums.verify(&mut file, 0..u64::MAX);
+        verified.map_err(|reason| unusable(&self.path, reason))
     }
 
     /// Number of samples in the file.
@@ -214,12 +260,16 @@ impl OutcomesReader {
     pub fn read(&self, study: &Study, first: u64, rows: usize) -> Result<OutcomeTable> {
         let fail = |reason: String| unusable(&self.path, reason);
         let mut file = File::open(&self.path).map_err(|reason| unusable(&self.path, reason))?;
-        self.checksums.verify(&mut file, first..first + rows as u64).map_err(fail)?;
-        let slice = Some((first as usize, rows));
+        let skipped = first.checked_sub(self.first);
+        let skipped = skipped.filter(|skipped| skipped.checked_add(rows as u64).is_some());
+        let none = || fail(format!("it has no {rows} samples from {first} on"));
+        let skipped = skipped.ok_or_else(none)?;
+        self.checksums.verify(&mut file, skipped..skipped + rows as u64).map_err(fail)?;
+        let slice = Some((skipped as usize, rows));
         let frame =
             damage::read(|| ParquetReader::new(file).with_slice(slice).finish()).map_err(fail)?;
         if frame.height() != rows {
-            return Err(fail(format!("it has no samples {first} to {}", first + rows as u64 - 1)));
+            return Err(none());
         }
         let layout = Layout::new(study);
         let mut table = OutcomeTable::new(first, rows, study.inputs.len());

@@ -20,6 +20,7 @@ mod published;
 mod readers;
 mod replaying;
 mod rig;
+mod shards;
 mod sweeping;
 mod tighten;
 mod together;
