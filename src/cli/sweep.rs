@@ -49,10 +49,13 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Ending> {
     stop_on_interrupt(&progress)?;
     let finding = campaign::with_threads(arguments.threads.asked(), || {
         let descents = samples.unwrap_or(0) * grid.cells().len() as u64;
-        let _watch = Watch::start(&progress, descents, "sweeping");
+        let watch = Watch::start(&progress, descents, "sweeping");
         let cells = run_sweep(&study, &grid, samples, &progress)?;
-        let command = command(arguments);
-        cells.map(|cells| findings(&study, &grid, &cells, samples, command)).transpose()
+        drop(watch);
+        match cells {
+            Some(cells) => findings(&study, &grid, &cells, samples, command(arguments), &progress),
+            None => Ok(None),
+        }
     })??;
     let Some(finding) = finding else {
         say_error("stopped before the sweep was complete; nothing was written");
@@ -220,6 +223,16 @@ fn write_long_table(path: &Path, study: &Study, finding: &SweepFinding) -> Resul
                 counts: Some((counts.breaches, counts.faults)),
             });
         }
+        if let (Some(estimate), Some(counts)) = (&cell.confirmed, &cell.confirmed_counts) {
+            rows.push(Row {
+                cell: k,
+                kind: "confirmed probability",
+                name: "any".to_owned(),
+                value: estimate.value,
+                interval: estimate.interval.interval().map(|i| (i.lower, i.upper)),
+                counts: Some((counts.breaches, counts.faults)),
+            });
+        }
     }
     let number =
         |read: &dyn Fn(&Row) -> Option<f64>| Field::Number(rows.iter().map(read).collect());
@@ -245,6 +258,9 @@ fn write_long_table(path: &Path, study: &Study, finding: &SweepFinding) -> Resul
     parents.0.insert("command".to_owned(), finding.reproduction.command.clone());
     if let Some(samples) = finding.samples {
         parents.0.insert("samples".to_owned(), samples.to_string());
+    }
+    if let Some(samples) = finding.confirming_samples {
+        parents.0.insert("confirming_samples".to_owned(), samples.to_string());
     }
     write_table(path, columns, parents.entries())
 }

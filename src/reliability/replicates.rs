@@ -126,12 +126,12 @@ fn widened_if_few(
         (false, true) => Some(METHOD_FEW_CLEAN),
         (false, false) => None,
     };
-    if let (Earned::Interval(interval), Some(method)) = (&mut found.probability.interval, few) {
-        if let Earned::Interval(exact) = together.interval(confidence)? {
-            interval.lower = interval.lower.min(exact.lower);
-            interval.upper = interval.upper.max(exact.upper);
-            interval.method = method;
-        }
+    if let (Earned::Interval(interval), Some(method)) = (&mut found.probability.interval, few)
+        && let Earned::Interval(exact) = together.interval(confidence)?
+    {
+        interval.lower = interval.lower.min(exact.lower);
+        interval.upper = interval.upper.max(exact.upper);
+        interval.method = method;
     }
     Ok(found)
 }
