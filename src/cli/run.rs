@@ -255,9 +255,13 @@ impl Run<'_> {
             let again = replay::compute(self.study, index)?;
             if !replay::same_bits((table, row), (&again, 0)) {
                 let reason = format!("sample {index} computed again differs from its row");
+                let (action, remedy) = match self.asked.source {
+                    Source::Shards(_) => ("merge", "compute shards and merge them with one build"),
+                    _ => ("resume", "run without --resume"),
+                };
                 let help =
-                    "the file was changed, or this build computes other bits: run without --resume";
-                return Err(Error::file(path, "resume", reason, help));
+                    format!("the file was changed, or this build computes other bits: {remedy}");
+                return Err(Error::file(path, action, reason, help));
             }
         }
         Ok(())
@@ -348,7 +352,7 @@ impl Run<'_> {
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |t| t.as_secs());
         let provenance = serde_json::json!({
             "version": env!("CARGO_PKG_VERSION"),
-            "command": std::env::args().collect::<Vec<_>>(),
+            "command": std::env::args_os().map(|a| a.to_string_lossy().into_owned()).collect::<Vec<_>>(),
             "finished_unix_s": since_1970,
             "host": std::fs::read_to_string("/proc/sys/kernel/hostname").ok().map(|h| h.trim().to_owned()),
             "architecture": std::env::consts::ARCH,
