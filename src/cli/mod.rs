@@ -88,7 +88,7 @@ pub fn main() -> ExitCode {
 fn carry_out(arguments: Arguments) -> Result<Ending> {
     match arguments.command {
         None => {
-            misspelt_command(arguments.run.study.study.as_deref())?;
+            misspelt_command(arguments.run.sampled.study.study.as_deref())?;
             run::run(&arguments.run)
         }
         Some(Command::Run(run)) => run::run(&run),
