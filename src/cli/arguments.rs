@@ -163,6 +163,12 @@ pub(super) struct PlanArguments {
     /// Replace another plan
     #[arg(long)]
     pub force: bool,
+    /// Write the scripts of a Slurm array job and of the merge after it
+    #[arg(long)]
+    pub slurm: bool,
+    /// Write the manifest of a Kubernetes Indexed Job that runs this image
+    #[arg(long, value_name = "IMAGE")]
+    pub kubernetes: Option<String>,
 }
 
 #[derive(Debug, Args)]
@@ -183,6 +189,9 @@ pub(super) struct MissingArguments {
     /// The plan
     #[arg(value_name = "PLAN.json")]
     pub plan: PathBuf,
+    /// Number that the first shard has in what is printed: 1 for engines that count from 1
+    #[arg(long, value_name = "FIRST", default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..=1))]
+    pub from: u64,
 }
 
 #[derive(Debug, Args)]

@@ -8,6 +8,7 @@ mod compare;
 mod descend;
 mod describe;
 mod diagnostics;
+mod engines;
 mod figure_files;
 mod output;
 mod paper;

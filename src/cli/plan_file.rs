@@ -18,6 +18,8 @@ const LONGEST: u64 = 64 << 20;
 const PLAN: &str = "plan_digest";
 /// Footer entry of a shard: which it is.
 const SHARD: &str = "shard";
+/// The version that makes, reads and merges.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
 const HELP: &str = "expected a plan that `reeldown plan` has written";
 
 /// A plan.
@@ -166,7 +168,10 @@ impl Plan {
             && (reader.first(), reader.first().saturating_add(reader.rows()))
                 == (range.start, range.end);
         if !right {
-            return Shard::Missing("it is of another plan".to_owned());
+            let version = reader.parentage().0.get("version").filter(|&v| v != VERSION);
+            let other =
+                version.map(|v| format!("it was made by reeldown {v}, and this is {VERSION}"));
+            return Shard::Missing(other.unwrap_or_else(|| "it is of another plan".to_owned()));
         }
         match reader.verify() {
             Ok(()) => Shard::Done(Box::new(reader)),

@@ -39,16 +39,11 @@ const SPOT_CHECKS: usize = 8;
 pub(super) fn run(arguments: &RunArguments) -> Result<Ending> {
     let study = arguments.sampled.load()?;
     study.design.validate()?;
-    let again = arguments
-        .output
-        .out
-        .as_ref()
-        .map_or(String::new(), |out| format!(" --out {}", quoted(&out.display().to_string())));
     let command = command(&arguments.sampled);
     let asked = Asked {
         study: &study,
         name: &arguments.sampled.study.name(),
-        to_go_on: format!("{command} --resume{again}"),
+        to_go_on: format!("{command} --resume"),
         command,
         source: if arguments.resume { Source::Resumed } else { Source::Computed },
     };
@@ -273,11 +268,15 @@ impl Run<'_> {
         let Some(left) = UnfinishedTable::recover(path)? else { return Ok(()) };
         let reader = OutcomesReader::open(&left.path())?;
         let rows = reader.rows();
-        if !matches!(self.asked.source, Source::Resumed) {
-            say_error(&format!(
-                "note: the {rows} samples of a run that ended early are replaced; --resume would have kept them"
-            ));
-            return left.discard();
+        match self.asked.source {
+            Source::Resumed => {}
+            Source::Computed => {
+                say_error(&format!(
+                    "note: the {rows} samples of a run that ended early are replaced; --resume would have kept them"
+                ));
+                return left.discard();
+            }
+            Source::Shards(_) => return left.discard(),
         }
         // A table that cannot be read is no reason to drop one that can.
         let kept = OutcomesReader::open(path).ok().filter(|kept| self.holds_rows_of_this(kept));
@@ -322,9 +321,12 @@ impl Run<'_> {
             format!("stopped after {computed} of {most}{} samples", plan.samples)
         };
         say_error(&format!(
-            "{when}; they are in {}\nto go on: {}",
+            "{when}; they are in {}\nto go on: {}{}",
             self.directory.path().join(OUTCOMES).display(),
             self.asked.to_go_on,
+            self.output.out.as_ref().map_or(String::new(), |out| {
+                format!(" --out {}", quoted(&out.display().to_string()))
+            }),
         ));
         Ending::Interrupted
     }

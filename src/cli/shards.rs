@@ -5,7 +5,7 @@ use super::arguments::{MissingArguments, PlanArguments, ShardArguments};
 use super::output::{say, say_error, say_notes, stderr_style};
 use super::plan_file::{Plan, Shard, compact};
 use super::watch::{Watch, stop_on_interrupt, stop_on_termination};
-use super::{diagnostics, done, run};
+use super::{diagnostics, done, engines, run};
 use crate::campaign::{self, Progress, RowGroups};
 use crate::error::{Error, Result};
 use crate::outcomes::OutcomeTable;
@@ -53,11 +53,18 @@ pub(super) fn plan(arguments: &PlanArguments) -> Result<Ending> {
     say_notes(&study);
     let each = plan.range(0).end;
     let file = run::quoted(&path.display().to_string());
+    let mut engines = String::new();
+    if arguments.slurm {
+        engines = format!("\n{}", engines::write_slurm(&plan, &path)?);
+    }
+    if let Some(image) = &arguments.kubernetes {
+        engines += &format!("\n{}", engines::write_kubernetes(&plan, &path, image)?);
+    }
     done(&format!(
         "{}: {} samples in {} shards of about {each}\n\
          each:      reeldown shard {file} --shard K   (K from 0 to {}; auto takes it from the engine)\n\
          then:      reeldown merge {file}\n\
-         meanwhile: reeldown missing {file}",
+         meanwhile: reeldown missing {file}{engines}",
         path.display(),
         plan.samples,
         plan.shards,
@@ -172,7 +179,7 @@ pub(super) fn missing(arguments: &MissingArguments) -> Result<Ending> {
         say_error(&format!("all {} shards are there", plan.shards));
         return Ok(Ending::Done);
     }
-    let numbers: Vec<u64> = missing.iter().map(|(k, _)| *k).collect();
+    let numbers: Vec<u64> = missing.iter().map(|(k, _)| k + arguments.from).collect();
     say_error(&format!("{} of {} shards are missing", numbers.len(), plan.shards));
     say(&compact(&numbers))?;
     Ok(Ending::Incomplete)

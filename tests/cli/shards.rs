@@ -71,7 +71,7 @@ fn property_merged_shards_are_the_run_of_one_machine() {
     // More than a row group, in shards that end within it.
     let arguments = ["--samples", "70001", "--set", "model=quasi-steady"];
     whole(&place, "whole", &arguments);
-    for shards in [1, 3, 8] {
+    for shards in [1, 3, 7] {
         let plan = planned(&place, &format!("plan-{shards}"), shards, &arguments);
         // In any order, on any number of threads.
         for k in (0..shards).rev() {
@@ -123,6 +123,7 @@ fn property_what_is_missing_damaged_or_foreign_is_listed_and_not_merged() {
         shard(&plan, k).ended_with(0);
     }
     assert_eq!(missing(), (5, "3".to_owned()));
+    assert_eq!(reeldown(&["missing", &plan, "--from", "1"]).ended_with(5).out.trim(), "4");
     shard(&plan, 3).ended_with(0);
     assert_eq!(missing(), (0, String::new()));
     // A flipped byte, an empty file, another's shard.
@@ -226,6 +227,13 @@ fn property_a_plan_is_believed_whole_or_not_at_all() {
         reeldown(&["missing", &bad]).ended_with(1);
         reeldown(&["merge", &bad]).ended_with(1);
     }
+    // One of another version, whole in itself.
+    let (made, rest) = text.split_once("  \"digest\": \"").expect("the digest is the last entry");
+    let made = made.replace(env!("CARGO_PKG_VERSION"), "0.0.9") + "  \"digest\": \"";
+    let digest = reeldown::study::sha256(format!("{made}{}", &rest[64..]).as_bytes());
+    let bad = place.write("bad.json", format!("{made}{digest}{}", &rest[64..]));
+    let answer = shard(&bad, 0).ended_with(2);
+    assert!(answer.err.contains("it was made by reeldown 0.0.9, and this is"), "{}", answer.err);
     shard(&place.at("nowhere.json"), 0).ended_with(2);
     shard(&plan, 3).ended_with(2);
     shard(&plan, 0).ended_with(0);
@@ -282,4 +290,67 @@ fn property_a_shard_computed_twice_at_once_or_stopped_leaves_what_it_should() {
     }
     assert_eq!(place.unfinished(), Vec::<PathBuf>::new());
     assert_eq!(reeldown(&["missing", &plan]).ended_with(5).out.trim(), "1");
+}
+
+/// The scripts, as Slurm starts them; on a real cluster: `.ci/slurm`.
+#[cfg(unix)]
+#[test]
+fn property_the_scripts_for_slurm_compute_and_merge() {
+    let place = Place::new("slurm scripts");
+    let arguments = ["--samples", "300"];
+    let plan = planned(&place, "a plan", 3, &[&arguments[..], &["--slurm"]].concat());
+    let script = |name: &str, task: &str| {
+        let mut command = Command::new("bash");
+        command.arg(place.at(&format!("a plan/{name}"))).env("SLURM_ARRAY_TASK_ID", task);
+        Answer::of(command.env("SLURM_CPUS_PER_TASK", "1").output().expect("bash starts"))
+    };
+    let array = String::from_utf8(place.bytes("a plan/array.sbatch")).expect("UTF-8");
+    let log = format!("#SBATCH --output=\"{}\"", place.at("a plan/shard-%a.log"));
+    for line in ["#!/bin/bash", "#SBATCH --array=0-2", "#SBATCH --requeue", &log] {
+        assert!(array.lines().any(|found| found == line), "no {line} in {array}");
+    }
+    for task in ["0", "2"] {
+        script("array.sbatch", task).ended_with(0);
+    }
+    let answer = script("merge.sbatch", "0").ended_with(1);
+    assert!(answer.err.contains("these are missing: 1 "), "{}", answer.err);
+    script("array.sbatch", "1").ended_with(0);
+    script("merge.sbatch", "0");
+    whole(&place, "whole", &arguments);
+    assert_same(&place, "whole", "a plan/results");
+    assert_eq!(reeldown(&["missing", &plan]).ended_with(0).out, "");
+    // What a line of a script's head cannot name.
+    for odd in ["50%", "quo\"te", "line\nend"] {
+        let out = place.at(odd);
+        let answer =
+            reeldown(&["plan", "--samples", "9", "--shards", "3", "--out", &out, "--slurm"]);
+        assert!(answer.ended_with(1).err.contains("use another directory"));
+    }
+}
+
+#[test]
+fn reference_kubernetes_validate_accepts_the_manifest() {
+    let place = Place::new("kubernetes");
+    let image = ["--kubernetes", "registry.example/reeldown:0.1"];
+    planned(&place, "plan", 7, &[&["--samples", "300"], &image[..]].concat());
+    let job = String::from_utf8(place.bytes("plan/job.yaml")).expect("UTF-8");
+    // What is on record was accepted by kubernetes-validate 1.37.0 against the schemas of Kubernetes 1.29 and 1.33:
+    // `kubernetes-validate -k 1.33 --strict tests/cli/references/job.yaml`.
+    let recorded = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/cli/references/job.yaml");
+    assert_eq!(job, std::fs::read_to_string(recorded).expect("the recorded manifest"));
+    for image in ["", "a b", "x\"\n"] {
+        let out = place.at("none");
+        let answer = reeldown(&[
+            "plan",
+            "--samples",
+            "9",
+            "--shards",
+            "3",
+            "--out",
+            &out,
+            "--kubernetes",
+            image,
+        ]);
+        assert!(answer.ended_with(1).err.contains("expected the name of an image"));
+    }
 }
