@@ -1,8 +1,8 @@
 //! What engines are told of a plan: the scripts of a Slurm array job and of the merge after it, and the manifest of a
 //! Kubernetes Indexed Job.
 
+use super::command_line::quoted;
 use super::plan_file::Plan;
-use super::run::quoted;
 use crate::error::{Error, Result};
 use crate::store::write_text;
 use std::path::{Path, PathBuf};

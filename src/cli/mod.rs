@@ -4,6 +4,7 @@ mod arguments;
 mod calibrate;
 mod calibrate_arguments;
 mod check;
+mod command_line;
 mod compare;
 mod descend;
 mod describe;

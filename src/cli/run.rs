@@ -1,6 +1,7 @@
 //! `reeldown run`: the main job; and `reeldown merge`: the same, of samples that were computed elsewhere.
 
-use super::arguments::{MergeArguments, RunArguments, RunOutput, SampledStudy};
+use super::arguments::{MergeArguments, RunArguments, RunOutput};
+use super::command_line::{quoted, run_of};
 use super::figure_files::write_report_figures;
 use super::output::{say, say_error, say_notes, stdout_style};
 use super::plan_file::Plan;
@@ -39,7 +40,7 @@ const SPOT_CHECKS: usize = 8;
 pub(super) fn run(arguments: &RunArguments) -> Result<Ending> {
     let study = arguments.sampled.load()?;
     study.design.validate()?;
-    let command = command(&arguments.sampled);
+    let command = run_of(&arguments.sampled);
     let asked = Asked {
         study: &study,
         name: &arguments.sampled.study.name(),
@@ -440,26 +441,4 @@ fn or_reason<T>(found: Result<Option<T>>, none: &str) -> std::result::Result<T, 
         Ok(found) => found.ok_or_else(|| none.to_owned()),
         Err(reason) => Err(reason.to_string()),
     }
-}
-
-/// The command that gives the same numbers.
-pub(super) fn command(sampled: &SampledStudy) -> String {
-    let mut words = vec!["reeldown".to_owned(), "run".to_owned()];
-    if let Some(study) = &sampled.study.study {
-        words.push(quoted(&study.display().to_string()));
-    }
-    for (option, value) in [("--samples", &sampled.samples), ("--seed", &sampled.seed)] {
-        words.extend(value.iter().map(|value| format!("{option} {}", quoted(value))));
-    }
-    words.extend(sampled.study.set.iter().map(|s| format!("--set {}", quoted(s))));
-    words.join(" ")
-}
-
-/// A word of a command line, quoted if the shell would take it apart.
-pub(super) fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        return word.to_owned();
-    }
-    format!("'{}'", word.replace('\'', r"'\''"))
 }

@@ -2,10 +2,11 @@
 
 use super::Ending;
 use super::arguments::{MissingArguments, PlanArguments, ShardArguments};
+use super::command_line::{quoted, run_of};
 use super::output::{say, say_error, say_notes, stderr_style};
 use super::plan_file::{Plan, Shard, compact};
 use super::watch::{Watch, stop_on_interrupt, stop_on_termination};
-use super::{diagnostics, done, engines, run};
+use super::{diagnostics, done, engines};
 use crate::campaign::{self, Progress, RowGroups};
 use crate::error::{Error, Result};
 use crate::outcomes::OutcomeTable;
@@ -47,12 +48,12 @@ pub(super) fn plan(arguments: &PlanArguments) -> Result<Ending> {
         .unwrap_or_else(|| PathBuf::from("runs").join(format!("{name}-shards")));
     // What a shard would refuse is refused now.
     campaign::sampler(&study)?;
-    let plan = Plan::new(&study, &name, run::command(&arguments.sampled), arguments.shards)?;
+    let plan = Plan::new(&study, &name, run_of(&arguments.sampled), arguments.shards)?;
     let path = directory.join(PLAN);
     plan.write(&path, arguments.force)?;
     say_notes(&study);
     let each = plan.range(0).end;
-    let file = run::quoted(&path.display().to_string());
+    let file = quoted(&path.display().to_string());
     let mut engines = String::new();
     if arguments.slurm {
         engines = format!("\n{}", engines::write_slurm(&plan, &path)?);
