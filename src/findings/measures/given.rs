@@ -141,11 +141,10 @@ impl Output {
             }
             Method::Delta => {
                 let data = first_rows(&sample.scores, &values, DISTANCE_ROWS)?;
-                let found = borgonovo_delta(&data, CONFIDENCE, seed)?;
-                let found = found.into_iter().map(|found| found.delta).collect();
-                let method = "classes, bias taken off";
+                let found = borgonovo_delta(&data, CONFIDENCE)?;
+                let method = "cross-fitted copula density";
                 vec![
-                    IndexColumn::new("borgonovo_delta", method, data.rows(), found, Some(BIAS))
+                    IndexColumn::new("borgonovo_delta", method, data.rows(), found, Some(ERROR))
                         .leaving_out(data.left_out()),
                 ]
             }
