@@ -189,7 +189,7 @@ pub(super) fn limits(node: &Node) -> Result<Vec<Limit>> {
             if let Some(node) = section.get(kind.name()) {
                 let value = limit_value(outcome, kind, node)?;
                 *side = Some((value, node));
-                limits.push(Limit { outcome, kind, value, text: written(node) });
+                limits.push(Limit { outcome, kind, value, text: written(node), implied: false });
             }
         }
         match sides {
@@ -205,6 +205,12 @@ pub(super) fn limits(node: &Node) -> Result<Vec<Limit>> {
             }
             _ => {}
         }
+    }
+    let upper_on_time = |limit: &Limit| {
+        limit.margin_of(TIME_LIMIT_S) < 0.0 && limit.outcome == OutcomeQuantity::Time
+    };
+    if !limits.is_empty() && !limits.iter().any(upper_on_time) {
+        limits.push(Limit::deployment());
     }
     limits.sort_by_key(|limit| (limit.outcome, limit.kind));
     Ok(limits)
