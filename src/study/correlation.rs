@@ -10,7 +10,9 @@ use super::{Correlation, Input};
 use crate::error::{Error, Result};
 use crate::physics::design::Target;
 use crate::physics::parameters::{PARAMETERS, Parameter};
-use crate::uncertainty::{Copula, Joint, JointSample, Marginal, Measure, Refusal, Statement};
+use crate::uncertainty::{
+    Copula, Joint, JointSample, Marginal, Measure, NEAREST_TO_ONE, Refusal, Statement,
+};
 use crate::units::Quantity;
 use crate::units::number;
 use crate::units::spelling::nearest;
@@ -57,7 +59,7 @@ pub(super) fn joint(
             }
             // A later card wins, as it does for inputs; within one card a pair is stated once.
             if by_pair.get(&pair).is_some_and(|old| Arc::ptr_eq(&old.place.text, &new.place.text)) {
-                let problem = "this pair has a correlation already";
+                let problem = "duplicate correlation for this pair";
                 return Err(new.place.error(problem, "expected one statement for each pair"));
             }
             by_pair.insert(pair, new);
@@ -93,7 +95,7 @@ fn read_statement(inputs: &[Input], statement: &Node) -> Result<Vec<Placed>> {
             .error(problem, format!("expected two inputs, such as {EXAMPLE}")));
     };
     let [first, second] = names.as_slice() else {
-        let problem = format!("{} inputs are named", names.len());
+        let problem = format!("two inputs must be named, not {}", names.len());
         return Err(between
             .place
             .error(problem, format!("expected two inputs, such as {EXAMPLE}")));
@@ -200,6 +202,13 @@ fn blame(inputs: &[Input], placed: &[Placed], refusal: Refusal) -> Error {
     let Some(culprit) = placed.get(refusal.statement) else { return refusal.into() };
     let (a, b) = culprit.correlation.between;
     let path = |k: usize| inputs.get(k).map_or(String::new(), |input| input.target.path());
+    if refusal.alone {
+        // What a single statement can say wrong was refused where it was read, but for this.
+        let problem = format!("the correlation makes {} and {} one input", path(a), path(b));
+        let expected =
+            format!("expected at most {NEAREST_TO_ONE} in size, or the two as a single input");
+        return culprit.place.error(problem, expected);
+    }
     let is_same = |other: &&Placed| {
         Arc::ptr_eq(&other.place.text, &culprit.place.text)
             && other.place.span == culprit.place.span

@@ -2,8 +2,10 @@
 
 mod benchmarks;
 mod breach_probability;
+mod detailed_descents;
 mod driven_runs;
 mod first_order;
+mod near_certainty;
 mod paper_statements;
 mod reference_descents;
 mod reliability_methods;
