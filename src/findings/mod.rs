@@ -244,12 +244,13 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
     let drivers = drivers::drivers(study, &evidence.pick_freeze)?;
     let shapley = shapley::shapley(study, &evidence.shapley)?;
     let epistemic = epistemic::epistemic(study, &evidence.epistemic)?;
+    let probabilities = probabilities::probabilities(study, record)?;
     Ok(Findings {
         format: 1,
         title: study.title.clone(),
-        verdict: demonstration::verdict(study, record)?,
+        verdict: demonstration::verdict(study, record, &probabilities)?,
         stopping: sequence::stopping(study, record.counts().samples(), evidence.stop),
-        probabilities: probabilities::probabilities(study, record)?,
+        probabilities,
         rare: rare::rare_findings(study, &evidence.rare, evidence.nominal.as_ref().ok()),
         margins: margins::margins(study, record)?,
         outcomes: OutcomeQuantity::ALL.map(|quantity| outcome(record, quantity)).to_vec(),

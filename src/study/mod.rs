@@ -209,6 +209,13 @@ impl LimitKind {
     }
 }
 
+impl Study {
+    /// Places of the limits that the study states: how far one stays from the end of what is followed is no margin.
+    pub(crate) fn stated_limits(&self) -> Vec<usize> {
+        (0..self.limits.len()).filter(|&i| !self.limits[i].implied).collect()
+    }
+}
+
 /// A limit on an outcome.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limit {

@@ -184,7 +184,8 @@ pub(super) fn limits(node: &Node) -> Result<Vec<Limit>> {
     let entries = read::table(node, &format!("time = {example}"))?;
     let limits = all(entries.iter().map(|(key, value)| limit(key, value, example)))?;
     let mut limits: Vec<Limit> = limits.into_iter().flatten().collect();
-    let upper_on_time = |limit: &Limit| limit.outcome == OutcomeQuantity::Time && limit.kind == LimitKind::Max;
+    let upper_on_time =
+        |limit: &Limit| limit.outcome == OutcomeQuantity::Time && limit.kind == LimitKind::Max;
     if !limits.is_empty() && !limits.iter().any(upper_on_time) {
         limits.push(Limit::deployment());
     }
