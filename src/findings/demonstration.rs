@@ -35,7 +35,7 @@ pub enum VerdictWord {
 pub enum Decision {
     /// Exact binomial bounds on independent samples.
     Counts(Box<Demonstration>),
-    /// The one-sided ends of Student's t over independent replicates.
+    /// The one-sided ends of the interval over independent replicates.
     Replicates {
         /// Lower and upper bound of the probability of any breach, each at the requirement's confidence.
         bounds: Earned,

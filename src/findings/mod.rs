@@ -350,7 +350,7 @@ fn caveats(study: &Study, advice: Option<String>) -> Vec<String> {
     if study.sampling.design.is_replicated() {
         caveats.push(
             "The points of this design are not independent: intervals come from its replicates \
-             (Student's t), and exact binomial ones do not apply."
+             (Korn and Graubard), and exact binomial ones of all points do not apply."
                 .to_owned(),
         );
     }

@@ -41,6 +41,40 @@ fn property_exit_codes_tell_the_verdict() {
     run(&place, &[&["--samples", "no"]]).ended_with(1);
 }
 
+/// The headline of a replicated design is the interval of its table, or says that there is none; never a binomial one.
+#[test]
+fn property_without_a_requirement_the_headline_is_the_interval_of_the_table() {
+    let place = Place::new("headline");
+    place.write("card.toml", include_str!("../../distributions/habe.toml"));
+    for (design, limit) in [("sobol", 210), ("latin-hypercube", 210), ("halton", 1500)] {
+        let text = format!(
+            "title = \"h\"\ncard = \"card.toml\"\n[limits]\ntime = {{ max = \"{limit} s\" }}\n\
+             [sampling]\ndesign = \"{design}\"\nsamples = 1600\nreplicates = 16\n\
+             [sensitivity]\nbase_samples = 64\n[trade]\nsamples = 500\n[epistemic]\nouter = 0\n"
+        );
+        let study = place.write(&format!("{design}.toml"), &text);
+        let findings = run(&place, &[&[&study, "--json"]]).ended_with(0).json();
+        let any = findings["probabilities"]
+            .as_array()
+            .and_then(|all| all.iter().find(|p| p["kind"] == "any").cloned())
+            .unwrap_or_default();
+        let said = findings["verdict"]["statement"].as_str().unwrap_or_default().to_owned();
+        let percent = |end: &str| any["interval"]["interval"][end].as_f64().map(|p| 100.0 * p);
+        match (percent("lower"), percent("upper")) {
+            (Some(lower), Some(upper)) => {
+                let numbers: Vec<f64> =
+                    said.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+                let close = |x: f64| numbers.iter().any(|n| (n / x - 1.0).abs() < 1e-3);
+                assert!(limit == 210 && close(lower) && close(upper), "{said} {any}");
+            }
+            _ => assert!(
+                limit == 1500 && said.contains("no interval: no replicate saw"),
+                "{said} {any}"
+            ),
+        }
+    }
+}
+
 /// Nothing is ever lowered: a fluid a thousand times too thick, with limits that say nothing of time.
 const STUCK: &str = "title = \"stuck\"\ncard = \"card.toml\"\n[design]\n\
     \"fluid.nominal_viscosity\" = \"125000000 cSt\"\n[limits]\n\
