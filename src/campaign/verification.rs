@@ -63,8 +63,11 @@ pub fn verify(study: &Study, record: &Record) -> Result<Verification> {
     for (i, limit) in study.limits.iter().enumerate() {
         let margins = record.margins(i);
         let band = NEAR * limit.value.abs();
-        let mut near: Vec<u64> =
-            (0..margins.len() as u64).filter(|&k| margins[k as usize].abs() <= band).collect();
+        let mut near: Vec<u64> = (0..margins.len() as u64)
+            // A descent that was stopped undeployed is no nearer to a limit just below than one that never moved.
+            .filter(|&k| !limit.is_of_no_deployment(margins[k as usize]))
+            .filter(|&k| margins[k as usize].abs() <= band)
+            .collect();
         let all = near.len();
         near.sort_by(|&a, &b| {
             margins[a as usize].abs().total_cmp(&margins[b as usize].abs()).then(a.cmp(&b))

@@ -251,12 +251,13 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
     let drivers = drivers::drivers(study, &evidence.pick_freeze)?;
     let shapley = shapley::shapley(study, &evidence.shapley)?;
     let epistemic = epistemic::epistemic(study, &evidence.epistemic)?;
+    let probabilities = probabilities::probabilities(study, record)?;
     Ok(Findings {
         format: 1,
         title: study.title.clone(),
-        verdict: demonstration::verdict(study, record)?,
+        verdict: demonstration::verdict(study, record, &probabilities)?,
         stopping: sequence::stopping(study, record.counts().samples(), evidence.stop),
-        probabilities: probabilities::probabilities(study, record)?,
+        probabilities,
         rare: rare::rare_findings(study, &evidence.rare, evidence.nominal.as_ref().ok()),
         model_form: model_form::model_form(study, &evidence.model_form)?,
         margins: margins::margins(study, record)?,
@@ -357,7 +358,7 @@ fn caveats(study: &Study, advice: Option<String>) -> Vec<String> {
     if study.sampling.design.is_replicated() {
         caveats.push(
             "The points of this design are not independent: intervals come from its replicates \
-             (Student's t), and exact binomial ones do not apply."
+             (Korn and Graubard), and exact binomial ones of all points do not apply."
                 .to_owned(),
         );
     }
