@@ -26,6 +26,11 @@
 //! `ē` the mean of the fluidity `e = exp(−B/T)` across the film: nothing has to be iterated for.
 //! With a thermal expansion `α` the density, and `ρ ν` with it, falls as `exp(−α (T − 25 °C))`, in the group too.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "an index is a point in space, of several fields at once"
+)]
+
 use super::design::Design;
 use super::parameters::Parameter;
 use super::space::{DENSITY_TEMPERATURE_K, PI, SMALLEST_BORE, Space};

@@ -170,16 +170,15 @@ fn assemble_with(
     });
     let joint = mistakes.keep(joint);
     let (drawn_together, joint, correlations) = mistakes.none_or(joint)?;
+    let moved =
+        prior.as_ref().map_or(0, |prior| to_the_posterior(&mut design, &inputs, prior, &stated));
     let mut notes = notes(&design, &inputs, &stated);
     notes.extend(card.together.iter().filter_map(unused));
     notes.extend(epistemic::shared_readings(&inputs));
-    if let Some(prior) = &prior {
-        let moved = to_the_posterior(&mut design, &inputs, prior, &stated);
-        if moved > 0 {
-            notes.push(format!(
-                "{moved} calibrated inputs have their posterior means as nominal values: the card before them had others"
-            ));
-        }
+    if moved > 0 {
+        notes.push(format!(
+            "{moved} calibrated inputs have their posterior means as nominal values: the card before them had others"
+        ));
     }
     Ok(Study {
         title,

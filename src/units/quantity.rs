@@ -168,7 +168,7 @@ impl Quantity {
             Quantity::Conductance => &["W/K", "BTU/h/°F"],
             Quantity::Conductivity => &["W/m/K"],
             Quantity::VolumetricHeatCapacity => &["MJ/m³/K"],
-            Quantity::Expansion => &["%/K", "1/K"],
+            Quantity::Expansion => &["%/K", "K⁻¹"],
         }
     }
 

@@ -2,8 +2,17 @@
 
 use super::program::{Answer, Place, reeldown};
 
-/// A study of one limit around a line to be tried.
+/// What is answered to a study and a card with one mistake.
+#[track_caller]
 fn answer(place: &Place, study: &str, card: &str) -> Answer {
+    let answer = answer_to_mistakes(place, study, card);
+    let errors = answer.err.matches("error: ").count();
+    assert_eq!(errors, 1, "one message: {}", answer.err);
+    answer
+}
+
+/// What is answered to a study and a card with mistakes.
+fn answer_to_mistakes(place: &Place, study: &str, card: &str) -> Answer {
     place.write("card.toml", card);
     let study = place.write("bad.toml", study);
     let out = place.at("run");
@@ -15,8 +24,6 @@ fn answer(place: &Place, study: &str, card: &str) -> Answer {
         let other = reeldown(&[command, &study]).ended_with(1);
         assert_eq!(other.err, answer.err, "{command}");
     }
-    let errors = answer.err.matches("error: ").count();
-    assert_eq!(errors, 1, "one message: {}", answer.err);
     answer
 }
 
@@ -49,10 +56,10 @@ fn property_a_wrong_unit_and_an_impossible_value_show_the_place() {
     let place = Place::new("values");
     let study = "title = \"x\"\ncard = \"card.toml\"\n[limits]\ntime = { max = \"210 kg\" }\n";
     assert_says(&answer(&place, study, CARD), &["bad.toml:4:21", "`kg`", "expected a time"]);
-    let study = "title = \"x\"\n[design]\n\"brake.gap\" = \"-1 mm\"\n";
-    assert_says(&answer(&place, study, CARD), &["bad.toml:3:15", "impossible", "expected"]);
-    let study = "title = \"x\"\n[design]\nbrake.inner_radius = \"20 in\"\n";
-    assert_says(&answer(&place, study, CARD), &["bad.toml:3:22", "brake.outer_radius"]);
+    let study = "title = \"x\"\ncard = \"card.toml\"\n[design]\n\"brake.gap\" = \"-1 mm\"\n";
+    assert_says(&answer(&place, study, CARD), &["bad.toml:4:15", "impossible", "expected"]);
+    let study = "title = \"x\"\ncard = \"card.toml\"\n[design]\nbrake.inner_radius = \"20 in\"\n";
+    assert_says(&answer(&place, study, CARD), &["bad.toml:4:22", "brake.outer_radius"]);
 }
 
 #[test]
@@ -139,7 +146,7 @@ fn property_all_mistakes_of_a_study_are_shown_at_once() {
                  time = { max = 210 }\n[sampling]\nsampels = 5\n";
     let parts =
         ["bad.toml:4:13", "bad.toml:6:16", "bad.toml:8:1", "did you mean `samples`?", "3 mistakes"];
-    assert_says(&answer(&place, study, CARD), &parts);
+    assert_says(&answer_to_mistakes(&place, study, CARD), &parts);
 }
 
 #[test]

@@ -76,7 +76,7 @@ fn property_csv_with_units_is_the_same_sample_in_si() {
     write(
         &place,
         "si.csv",
-        "thermal.fluid_capacity,initial.temperature\n4000,288.15\n3900,290.15\n4100,280.15\n",
+        "thermal.fluid_capacity [J/K],initial.temperature [K]\n4000,288.15\n3900,290.15\n4100,280.15\n",
     );
     write(
         &place,

@@ -186,7 +186,7 @@ macro_rules! system {
                 let c = &self.plain;
                 let mut state = [c.initial_temperature_k; N];
                 state[0] = 0.0;
-                state[1..=$velocities].fill(c.balloon.rise_speed_m_per_s);
+                state[1..1 + $velocities].fill(c.balloon.rise_speed_m_per_s);
                 state
             }
             fn moment(&self, state: &[f64; N]) -> Moment<[f64; N], f64> {

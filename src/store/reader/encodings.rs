@@ -219,7 +219,7 @@ impl Cell for f64 {
                 decimal(whole, places)
             }),
             Kind::Decimal { bytes: Some(width), places } => {
-                let values = fixed(bytes, count, width, |value| big_endian(value))?;
+                let values = fixed(bytes, count, width, big_endian)?;
                 values.into_iter().map(|whole| Ok(decimal(whole?, places))).collect()
             }
             Kind::Decimal { bytes: None, places } => {

@@ -4,6 +4,11 @@
 //! the film's middle), the housing's temperature, `t`. The motion is that of `dynamic.rs` and `quasi_steady.rs`, with `v` itself in
 //! place of `z = κ v`.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "an index is a point in space, of several fields at once"
+)]
+
 mod brake;
 mod dynamic;
 mod linear;
