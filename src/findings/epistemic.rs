@@ -32,6 +32,8 @@ pub struct EpistemicFinding {
     pub sets: usize,
     /// See `sets`.
     pub inner: u64,
+    /// Whether P of a set is integrated along lines; if not, breaches are counted.
+    pub integrated: bool,
     /// Descents spent, those for the shares included.
     pub descents: u64,
     /// Descents of the sets that could not be computed.
@@ -120,6 +122,7 @@ pub(super) fn epistemic(
         varying: outcomes.varying.clone(),
         sets: outcomes.sample.sets(),
         inner: outcomes.inner,
+        integrated: outcomes.sample.integrates(),
         descents: (outcomes.sample.points() + share_points) as u64,
         faults: outcomes.sample.faults(),
         events,
@@ -137,6 +140,7 @@ fn nothing(why: &str) -> EpistemicFinding {
         varying: Vec::new(),
         sets: 0,
         inner: 0,
+        integrated: false,
         descents: 0,
         faults: 0,
         events: Vec::new(),
