@@ -248,6 +248,9 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
     let mut drawn = study.clone();
     drawn.sampling.samples = record.counts().samples();
     let sampler = campaign::sampler(&drawn)?;
+    let mut numerical = numerical::numerical(study, record, &evidence.verification);
+    let verdict = demonstration::verdict(study, record, &probabilities)?;
+    let verdict = numerical::heed(study, record, &evidence.verification, &mut numerical, verdict)?;
     let drivers = drivers::drivers(study, &evidence.pick_freeze)?;
     let shapley = shapley::shapley(study, &evidence.shapley)?;
     let epistemic = epistemic::epistemic(study, &evidence.epistemic)?;
@@ -255,7 +258,7 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
     Ok(Findings {
         format: 1,
         title: study.title.clone(),
-        verdict: demonstration::verdict(study, record, &probabilities)?,
+        verdict,
         stopping: sequence::stopping(study, record.counts().samples(), evidence.stop),
         probabilities,
         rare: rare::rare_findings(study, &evidence.rare, evidence.nominal.as_ref().ok()),
@@ -281,7 +284,7 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
         exceptions: exceptions(record),
         inputs: inputs::inputs(study),
         correlations: inputs::correlations(study),
-        numerical: numerical::numerical(study, record, &evidence.verification),
+        numerical,
         method: MethodFinding {
             model: study.model.name(),
             design: sampler.describe() + &inputs::dependence(study),

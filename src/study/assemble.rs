@@ -73,7 +73,7 @@ fn assemble_with(
     let sampling = requirement.and_then(|requirement| {
         mistakes.keep(sections::sampling(find("sampling"), !unlimited, requirement))
     });
-    let numerics = mistakes.keep(sections::numerics(find("numerics")));
+    let numerics = mistakes.keep(sections::numerics(find("numerics"), model.unwrap_or_default()));
     let sensitivity = mistakes.keep(sections::sensitivity(find("sensitivity")));
     let reliability = mistakes.keep(sections::reliability(find("reliability")));
     let trade = mistakes.keep(tighten::trade(find("trade")));

@@ -9,9 +9,9 @@ use super::vocabulary as keys;
 use super::{
     Limit, LimitKind, Numerics, ReliabilityPlan, Requirement, SamplingPlan, SensitivityPlan, Stated,
 };
-use crate::descent::OutcomeQuantity;
 use crate::descent::outcome::TIME_LIMIT_S;
 use crate::descent::vector::{TOLERANCES, default_tolerance};
+use crate::descent::{Model, OutcomeQuantity};
 use crate::error::Result;
 use crate::physics::design::{Design, Target};
 use crate::physics::parameters::{PARAMETERS, Parameter};
@@ -320,8 +320,8 @@ pub(super) fn sampling(
 }
 
 /// `[numerics]`.
-pub(super) fn numerics(node: Option<&Node>) -> Result<Numerics> {
-    let mut numerics = Numerics { tolerance: default_tolerance() };
+pub(super) fn numerics(node: Option<&Node>, model: Model) -> Result<Numerics> {
+    let mut numerics = Numerics { tolerance: default_tolerance(model) };
     let Some(node) = node else { return Ok(numerics) };
     let entries = read::table(node, "{ tolerance = 1e-6 }")?;
     let section = Section::new("[numerics]", &node.place, entries, keys::NUMERICS)?;
