@@ -59,6 +59,8 @@ pub enum Purpose {
     Synthetic,
     /// Brakes and states of knowledge behind a plan of tests.
     Planning,
+    /// Rows of an earlier table that are computed again.
+    SpotCheck,
     /// Tests and benchmarks.
     Test,
 }
@@ -89,6 +91,7 @@ impl Purpose {
             Purpose::Calibration => b"calibrat",
             Purpose::Synthetic => b"syntheti",
             Purpose::Planning => b"planning",
+            Purpose::SpotCheck => b"spotchek",
             Purpose::Test => b"test    ",
         }
     }

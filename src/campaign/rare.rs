@@ -46,8 +46,10 @@ pub struct RareEvent {
 /// The design point of an event as a flight.
 #[derive(Debug, Clone)]
 pub struct MostLikelyBreach {
-    /// The point nearest to the medians that breaches.
+    /// The point nearest to the medians that breaches; where those breach themselves, the nearest that does not.
     pub point: DesignPoint,
+    /// Whether the medians breach.
+    pub medians_breach: bool,
     /// The inputs there, SI.
     pub draw: Vec<f64>,
     /// The descent there.
@@ -94,9 +96,22 @@ fn needs_slopes(method: &str) -> Option<Method> {
     }
 }
 
-/// Why such a method has no number where inputs are drawn from rows.
-const STEPS: &str = "inputs are drawn from the rows of a joint sample: the margins are step functions of the \
-    coordinate that picks the row, without the slopes that this method goes by";
+/// Why such a method has no number where an input's values jump along its coordinate, if one's do.
+fn steps(study: &Study) -> Option<String> {
+    if !study.joint.samples().is_empty() {
+        return Some(
+            "inputs are drawn from the rows of a joint sample: the margins are step functions of the \
+             coordinate that picks the row, without the slopes that this method goes by"
+                .to_owned(),
+        );
+    }
+    let input = study.inputs.iter().find(|input| input.marginal.has_jumps())?;
+    Some(format!(
+        "{} has values with a probability of their own: the margins are step functions of its coordinate, \
+         without the slopes that this method goes by",
+        input.target.path()
+    ))
+}
 
 /// What the samples saw of an event.
 fn seen(counts: &BreachCounts, event: Event) -> Option<Proportion> {
@@ -130,9 +145,10 @@ fn rare_event(
             estimates.push(crude);
         }
     }
+    let steps = steps(study);
     for &method in methods {
-        if let Some(smooth) = needs_slopes(method).filter(|_| !study.joint.samples().is_empty()) {
-            estimates.push(Estimate::without_number(smooth, event, STEPS));
+        if let (Some(smooth), Some(steps)) = (needs_slopes(method), &steps) {
+            estimates.push(Estimate::without_number(smooth, event, steps));
             continue;
         }
         match method {
@@ -188,11 +204,13 @@ fn rare_event(
             _ => {}
         }
     }
-    let nearest = points.as_ref().and_then(|found| found.points.first()).cloned();
-    let most_likely = nearest.map(|point| MostLikelyBreach {
-        draw: state.draw(&point.point),
-        flight: state.flight(&point.point),
-        point,
+    let most_likely = points.as_ref().and_then(|found| {
+        // The far side of a region of breaches has the other sign: it is no way into that region.
+        let medians_breach = found.origin_breaches;
+        let near = |point: &&DesignPoint| (point.reliability_index < 0.0) == medians_breach;
+        let point = found.points.iter().find(near)?.clone();
+        let (draw, flight) = (state.draw(&point.point), state.flight(&point.point));
+        Some(MostLikelyBreach { draw, flight, medians_breach, point })
     });
     let agreement = agreement(&estimates, FAMILY_RISK)?;
     debug_assert_eq!(state.limits(), study.limits.len());

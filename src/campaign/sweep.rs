@@ -3,6 +3,9 @@
 //! Every cell looks at the same points of the unit cube (common random numbers), so what differs between
 //! two cells is the design and not the luck of the draw: the map is smooth, and the best setting is found
 //! with a far smaller error than either probability has.
+//!
+//! What is found by looking over the cells has the luck of these points on its side. It is estimated anew at points that
+//! the search has not seen ([`confirm`]).
 
 use super::common_numbers::{Breaches, Change, CommonSample, Event};
 use super::{Progress, in_parallel};
@@ -21,6 +24,8 @@ pub const GROUPS: usize = 20;
 const BUDGET: u64 = 8_000_000;
 /// Samples of a cell unless told otherwise: at least and at most.
 const USUAL: (u64, u64) = (1000, 100_000);
+/// Samples of a setting that is estimated anew: at most, unless the cells have more.
+const MOST_CONFIRMING: u64 = 100_000;
 /// Shares of the quantiles of a limited outcome.
 pub const SHARES: [f64; 3] = [0.05, 0.5, 0.95];
 
@@ -173,12 +178,22 @@ pub struct Cell {
 
 /// Samples of a cell unless told otherwise: fewer the more cells there are, to two digits.
 pub fn usual_samples(cells: u64) -> u64 {
-    let share = (BUDGET / cells.max(1)).clamp(USUAL.0, USUAL.1);
+    to_two_digits((BUDGET / cells.max(1)).clamp(USUAL.0, USUAL.1))
+}
+
+/// Samples of each of `settings` settings estimated anew after a sweep of `cells` cells with `samples` each: half of the
+/// sweep's descents shared among them, and never fewer than a cell has.
+pub fn confirming_samples(samples: u64, cells: u64, settings: u64) -> u64 {
+    let share = samples.saturating_mul(cells) / 2 / settings.max(1);
+    to_two_digits(share.min(MOST_CONFIRMING)).max(samples)
+}
+
+fn to_two_digits(count: u64) -> u64 {
     let mut unit = 1;
-    while share / unit >= 100 {
+    while count / unit >= 100 {
         unit *= 10;
     }
-    share / unit * unit
+    count / unit * unit
 }
 
 /// Checks that every cell is a possible design.
@@ -230,6 +245,39 @@ pub fn run_sweep(
     Ok(cells.filter(|_| !progress.stopping()))
 }
 
+/// Breaches of any limit at settings that were found by looking over the cells, at `samples` fresh plain Monte Carlo
+/// points each, in the order of the settings. Settings of one line share their points, so that they differ by their
+/// design alone; lines do not. `None` if `progress` asks for a stop.
+///
+/// # Errors
+/// If nothing is uncertain, or a law cannot be moved to a swept value.
+pub fn confirm(
+    study: &Study,
+    grid: &Grid,
+    lines: &[Vec<Vec<f64>>],
+    samples: u64,
+    progress: &Progress,
+) -> Result<Option<Vec<Vec<Proportion>>>> {
+    let mut all = Vec::with_capacity(lines.len());
+    for (settings, line) in lines.iter().zip(0u64..) {
+        if settings.is_empty() {
+            all.push(Vec::new());
+            continue;
+        }
+        let rows = line * samples..(line + 1) * samples;
+        let sample = CommonSample::independent(study, rows, Purpose::Confirmation)?;
+        let counts = in_parallel(settings, |values| {
+            let breaches = sample.changed(&grid.change(study, values)?, progress)?;
+            Ok(breaches.count(Event::Any))
+        });
+        all.push(counts.into_iter().collect::<Result<_>>()?);
+        if progress.stopping() {
+            return Ok(None);
+        }
+    }
+    Ok(Some(all))
+}
+
 fn sampled(study: &Study, table: &OutcomeTable) -> Sampled {
     let breaches = Breaches::of(study, table);
     let group = |g: usize| breaches.counts(Event::Any, (g..table.rows()).step_by(GROUPS));
@@ -260,6 +308,11 @@ mod tests {
         assert_eq!(usual_samples(693), 11_000);
         assert_eq!(usual_samples(33), 100_000);
         assert_eq!(usual_samples(10_000), 1000);
+        // Half of 693 × 11 000 descents for 45 settings; never fewer than a cell has, nor more than is of use.
+        assert_eq!(confirming_samples(11_000, 693, 45), 84_000);
+        assert_eq!(confirming_samples(11_000, 693, 600), 11_000);
+        assert_eq!(confirming_samples(11_000, 693, 21), 100_000);
+        assert_eq!(confirming_samples(200_000, 3, 1), 200_000);
     }
 
     #[test]

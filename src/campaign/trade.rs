@@ -5,7 +5,9 @@ use super::common_numbers::{Breaches, Change, CommonSample, Event};
 use super::scores::{FactorScores, scores};
 use super::{Progress, Record, factors};
 use crate::error::Result;
+use crate::physics::Target;
 use crate::sensitivity::pick_freeze::Factor;
+use crate::streams::Purpose;
 use crate::study::{DesignRange, Study};
 use crate::uncertainty::Marginal;
 
@@ -357,6 +359,23 @@ fn sweep(sample: &CommonSample<'_>, range: &DesignRange, progress: &Progress) ->
     let fine =
         settings((best - 1.5 * step).max(range.lower), (best + 1.5 * step).min(range.upper))?;
     Ok(Sweep { range: range.clone(), coarse, fine })
+}
+
+/// The breaches of the study as it is and with a design value that was found by looking, at `rows` fresh plain Monte
+/// Carlo points: those of the search have the luck of the draw on the found value's side.
+///
+/// # Errors
+/// If nothing is uncertain, or a law cannot be moved to the value.
+pub fn design_value_anew(
+    study: &Study,
+    target: Target,
+    value: f64,
+    rows: u64,
+) -> Result<(Breaches, Breaches)> {
+    let progress = Progress::default();
+    let sample = CommonSample::independent(study, 0..rows, Purpose::Confirmation)?;
+    let there = Change::default().and_design(target, value);
+    Ok((sample.base(&progress)?, sample.changed(&there, &progress)?))
 }
 
 /// Every factor's spread halved at the best settings of the sweeps.

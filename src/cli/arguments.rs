@@ -111,7 +111,10 @@ pub(super) struct RunArguments {
     /// Directory for report and tables [default: runs/<study>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Continue an interrupted or shorter run in the same directory
+    /// Write into the directory even if it holds something else than earlier results of this study
+    #[arg(long)]
+    pub force: bool,
+    /// Continue a run that was interrupted or killed, or a shorter one, in the same directory
     #[arg(long)]
     pub resume: bool,
     #[command(flatten)]
@@ -186,6 +189,9 @@ pub(super) struct SweepArguments {
     /// Directory for report, figures and table [default: runs/<study>-sweep]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Write into the directory even if it holds something else than earlier results of this study
+    #[arg(long)]
+    pub force: bool,
     #[command(flatten)]
     pub threads: Threads,
     /// Print the findings as one JSON object in SI, and nothing else, on standard output
@@ -207,6 +213,9 @@ pub(super) struct TightenArguments {
     /// Directory for tighten.json and tighten.md
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Write into the directory even if it holds something else than earlier results of this study
+    #[arg(long, requires = "out")]
+    pub force: bool,
     #[command(flatten)]
     pub threads: Threads,
     /// Print the findings as one JSON object in SI, and nothing else, on standard output
@@ -221,6 +230,9 @@ pub(super) struct PaperArguments {
     /// Directory for report.md, paper.json and the figures
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Write into the directory even if it holds something else than earlier results of this study
+    #[arg(long, requires = "out")]
+    pub force: bool,
     /// Print the findings as one JSON object in SI, and nothing else, on standard output
     #[arg(long)]
     pub json: bool,

@@ -1,7 +1,7 @@
 //! `reeldown calibrate`: rig runs in, a posterior card out.
 
 use super::calibrate_arguments::CalibrateArguments;
-use super::figure_files::write_figures;
+use super::figure_files::write_report_figures;
 use super::output::{say, say_error, say_notes};
 use super::run::quoted;
 use super::{Ending, done};
@@ -11,17 +11,15 @@ use crate::descent::driven::Drive;
 use crate::error::{Error, Result};
 use crate::findings::calibration::{self as findings, CalibrationFinding};
 use crate::render;
-use crate::store::{Field, read_number_columns, refuse_obstacle, write_table, write_text};
+use crate::store::{Contents, Field, ResultDirectory, read_number_columns, write_table};
 use crate::study::{MeasuredRun, Study, sha256};
 use crate::units;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The findings as one tree.
 const FINDINGS: &str = "findings.json";
 /// The report.
 const REPORT: &str = "report.md";
-/// The directory of its figures.
-const FIGURES: &str = "figures";
 /// The joint sample.
 const POSTERIOR: &str = "posterior.parquet";
 /// The card that draws from it.
@@ -38,9 +36,13 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
     let directory = arguments.out.clone().unwrap_or_else(|| {
         PathBuf::from("runs").join(format!("{}-calibrated", arguments.study.name()))
     });
-    for name in [FINDINGS, REPORT, POSTERIOR, CARD, LAWS] {
-        refuse_obstacle(&directory.join(name))?;
-    }
+    let contents = Contents {
+        kind: "calibrate",
+        study: &study.title,
+        files: &[FINDINGS, REPORT, POSTERIOR, CARD, LAWS],
+        force: arguments.force,
+    };
+    let directory = ResultDirectory::open(&directory, contents)?;
     say_notes(&study);
     let runs = load(&arguments.data)?;
     let held_out = load(&arguments.hold_out)?;
@@ -65,23 +67,25 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
     let json = serde_json::to_string_pretty(&finding)
         .map_err(|reason| Error::argument(format!("the findings cannot be written: {reason}")))?;
     let figures = render::calibration_figures(&finding);
-    write_text(&directory.join(FINDINGS), &format!("{json}\n"))?;
-    write_figures(&directory.join(FIGURES), &figures)?;
-    write_text(&directory.join(REPORT), &render::calibration_markdown(&finding, &figures))?;
+    directory.write_text(FINDINGS, &format!("{json}\n"))?;
+    write_report_figures(&directory, &figures)?;
+    directory.write_text(REPORT, &render::calibration_markdown(&finding, &figures))?;
     if finding.accepted {
         write_cards(&directory, &study, &found, &finding)?;
     }
+    let place = directory.path().to_owned();
+    directory.finish()?;
     if arguments.json {
         done(&json)?;
     } else {
         say(&render::calibration_terminal(&finding))?;
     }
     if !finding.accepted {
-        say_error(&format!("no card is written; the report is in {}", directory.display()));
+        say_error(&format!("no card is written; the report is in {}", place.display()));
         return Ok(Ending::Undecided);
     }
     if !arguments.json {
-        say(&format!("\nthe card: {}", directory.join(CARD).display()))?;
+        say(&format!("\nthe card: {}", place.join(CARD).display()))?;
     }
     Ok(Ending::Done)
 }
@@ -157,7 +161,7 @@ fn load(paths: &[PathBuf]) -> Result<Vec<(MeasuredRun, String)>> {
 }
 
 fn write_cards(
-    directory: &Path,
+    directory: &ResultDirectory,
     study: &Study,
     found: &Calibration<'_>,
     finding: &CalibrationFinding,
@@ -180,12 +184,12 @@ fn write_cards(
         ("file_digests".to_owned(), serde_json::json!(reproduction.files).to_string()),
         ("data_digests".to_owned(), serde_json::json!(data).to_string()),
     ];
-    let path = directory.join(POSTERIOR);
+    let path = directory.table(POSTERIOR)?;
     write_table(&path, columns, metadata)?;
     let bytes = std::fs::read(&path).map_err(|reason| Error::file(&path, "read", reason, ""))?;
     let card = render::calibrated_card(finding, POSTERIOR, &sha256(&bytes));
-    write_text(&directory.join(CARD), &card)?;
-    write_text(&directory.join(LAWS), &render::calibrated_laws(finding))
+    directory.write_text(CARD, &card)?;
+    directory.write_text(LAWS, &render::calibrated_laws(finding))
 }
 
 /// The command that gives the same numbers.

@@ -42,6 +42,9 @@ pub(super) struct CalibrateArguments {
     /// Directory for report, joint sample and cards [default: runs/<study>-calibrated]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Write into the directory even if it holds something else than earlier results of this study
+    #[arg(long)]
+    pub force: bool,
     #[command(flatten)]
     pub threads: Threads,
     /// Print the findings as one JSON object in SI, and nothing else, on standard output

@@ -7,7 +7,7 @@ use crate::campaign::ROW_GROUP;
 use crate::error::{Error, Result};
 use crate::findings::compare::{FinishedRun, compare as findings};
 use crate::render;
-use crate::store::{OutcomesReader, write_text};
+use crate::store::{OutcomesReader, refuse_unfinished, verify_listed, write_text};
 use serde_json::Value;
 use std::path::Path;
 
@@ -44,9 +44,10 @@ fn read(directory: &Path) -> Result<FinishedRun> {
             return Err(fail(format!("it is no finished run: it lacks {name}")));
         }
     }
-    let text =
-        std::fs::read_to_string(&json).map_err(|why| Error::file(&json, "read", why, HELP))?;
-    let findings: Value = serde_json::from_str(&text)
+    refuse_unfinished(directory, "compare")?;
+    let bytes = std::fs::read(&json).map_err(|why| Error::file(&json, "read", why, HELP))?;
+    verify_listed(directory, "findings.json", &bytes)?;
+    let findings: Value = serde_json::from_slice(&bytes)
         .map_err(|why| Error::file(&json, "read", format!("it is not JSON: {why}"), HELP))?;
     let made_by = findings["reproduction"]["version"].as_str().unwrap_or("an unknown version");
     if findings["format"].as_u64() != Some(FORMAT) || made_by != env!("CARGO_PKG_VERSION") {

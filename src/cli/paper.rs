@@ -1,14 +1,14 @@
 //! `reeldown paper`: the paper's figures and statements, held against a design.
 
 use super::arguments::PaperArguments;
-use super::figure_files::write_figures;
+use super::figure_files::write_report_figures;
 use super::run::quoted;
 use super::{Ending, done};
 use crate::error::{Error, Result};
 use crate::findings::paper::{PaperFinding, paper as findings};
 use crate::physics::Parameter;
 use crate::render::{paper_page, table};
-use crate::store::write_text;
+use crate::store::{Contents, ResultDirectory};
 use crate::study::Study;
 use crate::units::engineering;
 
@@ -16,12 +16,21 @@ use crate::units::engineering;
 pub(super) fn paper(arguments: &PaperArguments) -> Result<Ending> {
     let study = arguments.study.load(&[])?;
     study.design.validate()?;
+    let contents = Contents {
+        kind: "paper",
+        study: &study.title,
+        files: &["report.md", "paper.json"],
+        force: arguments.force,
+    };
+    let directory = arguments.out.as_ref().map(|path| ResultDirectory::open(path, contents));
+    let directory = directory.transpose()?;
     let finding = findings(&study)?;
-    if let Some(directory) = &arguments.out {
+    if let Some(directory) = directory {
         let page = paper_page(&finding, &design(&study), &command(arguments));
-        write_figures(&directory.join("figures"), &page.figures)?;
-        write_text(&directory.join("report.md"), &page.markdown)?;
-        write_text(&directory.join("paper.json"), &format!("{}\n", json(&finding)?))?;
+        write_report_figures(&directory, &page.figures)?;
+        directory.write_text("report.md", &page.markdown)?;
+        directory.write_text("paper.json", &format!("{}\n", json(&finding)?))?;
+        directory.finish()?;
     }
     if arguments.json {
         return done(&json(&finding)?);

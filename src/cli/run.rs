@@ -1,7 +1,7 @@
 //! `reeldown run`: the main job.
 
 use super::arguments::RunArguments;
-use super::figure_files::write_figures;
+use super::figure_files::write_report_figures;
 use super::output::{say, say_error, say_notes, stdout_style};
 use super::sensitivity_table::{SENSITIVITY, write_sensitivity};
 use super::trade_tables::{TRADE, write_trade};
@@ -12,7 +12,10 @@ use crate::error::{Error, Result};
 use crate::findings::{self, Evidence, Findings, VerdictWord};
 use crate::outcomes::OutcomeTable;
 use crate::render;
-use crate::store::{OutcomesReader, OutcomesWriter, Parentage, refuse_obstacle, write_text};
+use crate::store::{
+    Contents, OutcomesReader, OutcomesWriter, Parentage, ResultDirectory, UnfinishedTable,
+};
+use crate::streams::{Purpose, open_uniform, stream};
 use crate::study::Study;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -26,10 +29,10 @@ const FINDINGS: &str = "findings.json";
 const REPORT: &str = "report.md";
 /// The report for a browser.
 const REPORT_HTML: &str = "report.html";
-/// The directory of its figures.
-const FIGURES: &str = "figures";
 /// What may differ between two runs of one study.
 const PROVENANCE: &str = "provenance.json";
+/// Rows of each row group that is read once more, beside its last, that are computed again.
+const SPOT_CHECKS: usize = 8;
 
 /// Runs a study and writes its report and tables.
 pub(super) fn run(arguments: &RunArguments) -> Result<Ending> {
@@ -46,25 +49,28 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Ending> {
     let directory =
         arguments.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(arguments.study.name()));
     // What stands in the way is said now, not after the descents.
-    for name in [OUTCOMES, FINDINGS, REPORT, REPORT_HTML, SENSITIVITY, TRADE, PROVENANCE] {
-        refuse_obstacle(&directory.join(name))?;
-    }
+    let contents = Contents {
+        kind: "run",
+        study: &study.title,
+        files: &[OUTCOMES, FINDINGS, REPORT, REPORT_HTML, SENSITIVITY, TRADE, PROVENANCE],
+        force: arguments.force,
+    };
+    let directory = ResultDirectory::open(&directory, contents)?;
     say_notes(&study);
     campaign::with_threads(arguments.threads.asked(), || {
-        Run { arguments, study: &study, directory: &directory, parentage: parentage::of(&study) }
-            .carry_out()
+        Run { arguments, study: &study, directory, parentage: parentage::of(&study) }.carry_out()
     })?
 }
 
 struct Run<'a> {
     arguments: &'a RunArguments,
     study: &'a Study,
-    directory: &'a Path,
+    directory: ResultDirectory,
     parentage: Parentage,
 }
 
 impl Run<'_> {
-    fn carry_out(&self) -> Result<Ending> {
+    fn carry_out(self) -> Result<Ending> {
         let begun = Instant::now();
         let progress = Arc::new(Progress::default());
         stop_on_interrupt(&progress)?;
@@ -132,15 +138,19 @@ impl Run<'_> {
         self.write(&findings)?;
         let times = (begun.elapsed().as_secs_f64(), sampled.as_secs_f64());
         self.write_provenance(times, progress.done(), (computed, samples - computed))?;
-        self.report(&findings)
+        let Run { arguments, directory, .. } = self;
+        let path = directory.path().join(REPORT);
+        directory.finish()?;
+        report(arguments, &findings, &path)
     }
 
     /// Computes the samples that are not there yet and writes all of them.
     fn sample(&self, progress: &Arc<Progress>) -> Result<(Record, Looks, u64)> {
-        let path = self.directory.join(OUTCOMES);
+        let path = self.directory.path().join(OUTCOMES);
         let most = self.study.sampling.samples;
         let sampler = campaign::sampler(self.study)?;
         let mut looks = Looks::new(self.study)?;
+        self.take_up(&path)?;
         let before = if self.arguments.resume { self.earlier(&path)? } else { None };
         if let Some(reader) = before.as_ref().filter(|reader| reader.rows() > most) {
             return Err(too_many(&path, reader.rows(), most));
@@ -171,19 +181,55 @@ impl Run<'_> {
             campaign::run_until(self.study, &mut looks, progress, &mut sink)?;
         }
         let computed = looks.taken() - read;
+        self.directory.table(OUTCOMES)?;
         Ok((rows.finish()?, looks, computed))
     }
 
-    /// Computes the last sample of a table that was read once more, and refuses a file that differs.
+    /// Computes the last sample of a table that was read once more, and some others, and refuses a file that differs.
+    /// Checksums tell of damage; this tells of a build or a machine that computes other bits.
     fn verify(&self, path: &Path, table: &OutcomeTable) -> Result<()> {
-        let last = table.first + table.rows() as u64 - 1;
-        let again = replay::compute(self.study, last)?;
-        if replay::same_bits((table, table.rows() - 1), (&again, 0)) {
-            return Ok(());
+        let mut stream = stream(self.study.sampling.seed, Purpose::SpotCheck, table.first);
+        let rows = table.rows();
+        let drawn = (0..SPOT_CHECKS).map(|_| (open_uniform(&mut stream) * rows as f64) as usize);
+        for row in std::iter::once(rows - 1).chain(drawn) {
+            let index = table.first + row as u64;
+            let again = replay::compute(self.study, index)?;
+            if !replay::same_bits((table, row), (&again, 0)) {
+                let reason = format!("sample {index} computed again differs from its row");
+                let help =
+                    "the file was changed, or this build computes other bits: run without --resume";
+                return Err(Error::file(path, "resume", reason, help));
+            }
         }
-        let reason = format!("sample {last} computed again differs from its row");
-        let help = "the file was changed, or this build computes other bits: run without --resume";
-        Err(Error::file(path, "resume", reason, help))
+        Ok(())
+    }
+
+    /// Takes up the row groups of a run that died, if it is to be continued and they are more than its table has;
+    /// else removes them.
+    fn take_up(&self, path: &Path) -> Result<()> {
+        let Some(left) = UnfinishedTable::recover(path)? else { return Ok(()) };
+        let reader = OutcomesReader::open(&left.path())?;
+        let rows = reader.rows();
+        if !self.arguments.resume {
+            say_error(&format!(
+                "note: the {rows} samples of a run that ended early are replaced; --resume would have kept them"
+            ));
+            return left.discard();
+        }
+        // A table that cannot be read is no reason to drop one that can.
+        let kept = OutcomesReader::open(path).ok().filter(|kept| self.holds_rows_of_this(kept));
+        if self.holds_rows_of_this(&reader) && kept.is_none_or(|kept| kept.rows() < rows) {
+            say_error(&format!("note: taking up {rows} samples of a run that ended early"));
+            self.directory.table(OUTCOMES)?;
+            return left.adopt();
+        }
+        left.discard()
+    }
+
+    /// Whether the rows of a table are those that this run computes.
+    fn holds_rows_of_this(&self, reader: &OutcomesReader) -> bool {
+        let same = |key: &str| reader.parentage().0.get(key) == self.parentage.0.get(key);
+        same("version") && same("row_digest")
     }
 
     /// The run to continue, if there is one and it is of this study.
@@ -193,8 +239,7 @@ impl Run<'_> {
             return Ok(None);
         }
         let reader = OutcomesReader::open(path)?;
-        let same = |key: &str| reader.parentage().0.get(key) == self.parentage.0.get(key);
-        if !same("version") || !same("row_digest") {
+        if !self.holds_rows_of_this(&reader) {
             return Err(Error::file(
                 path,
                 "resume",
@@ -215,7 +260,7 @@ impl Run<'_> {
         };
         say_error(&format!(
             "{when}; they are in {}\nto go on: {} --resume{}",
-            self.directory.join(OUTCOMES).display(),
+            self.directory.path().join(OUTCOMES).display(),
             self.command(),
             self.arguments.out.as_ref().map_or(String::new(), |out| {
                 format!(" --out {}", quoted(&out.display().to_string()))
@@ -245,14 +290,14 @@ impl Run<'_> {
     }
 
     fn write(&self, findings: &Findings) -> Result<()> {
-        let at = |name: &str| self.directory.join(name);
-        write_text(&at(FINDINGS), &render::json(findings)?)?;
+        let directory = &self.directory;
+        directory.write_text(FINDINGS, &render::json(findings)?)?;
         let figures = render::figures(findings);
-        write_figures(&at(FIGURES), figures.all())?;
-        write_text(&at(REPORT), &render::markdown(findings, &figures)?)?;
-        write_text(&at(REPORT_HTML), &render::html(findings, &figures)?)?;
-        write_sensitivity(&at(SENSITIVITY), findings, &self.parentage)?;
-        write_trade(&at(TRADE), findings, &self.parentage)
+        write_report_figures(directory, figures.all())?;
+        directory.write_text(REPORT, &render::markdown(findings, &figures)?)?;
+        directory.write_text(REPORT_HTML, &render::html(findings, &figures)?)?;
+        write_sensitivity(&directory.table(SENSITIVITY)?, findings, &self.parentage)?;
+        write_trade(&directory.table(TRADE)?, findings, &self.parentage)
     }
 
     /// What may differ between two runs of the same study: kept out of everything else.
@@ -274,22 +319,23 @@ impl Run<'_> {
             "samples_read_again": read,
             "study_digest": self.study.digest(),
         });
-        write_text(&self.directory.join(PROVENANCE), &format!("{provenance:#}\n"))
+        self.directory.write_varying(PROVENANCE, &format!("{provenance:#}\n"))
     }
+}
 
-    fn report(&self, findings: &Findings) -> Result<Ending> {
-        if self.arguments.json {
-            say(&render::json(findings)?)?;
-        } else if !self.arguments.quiet {
-            let summary = render::terminal(findings, stdout_style());
-            say(&format!("{summary}\nreport: {}", self.directory.join(REPORT).display()))?;
-        }
-        Ok(match findings.verdict.word {
-            VerdictWord::Met | VerdictWord::NoRequirement => Ending::Done,
-            VerdictWord::NotMet => Ending::NotMet,
-            VerdictWord::Undecided => Ending::Undecided,
-        })
+/// Shows a finished run, and says how it ended.
+fn report(arguments: &RunArguments, findings: &Findings, path: &Path) -> Result<Ending> {
+    if arguments.json {
+        say(&render::json(findings)?)?;
+    } else if !arguments.quiet {
+        let summary = render::terminal(findings, stdout_style());
+        say(&format!("{summary}\nreport: {}", path.display()))?;
     }
+    Ok(match findings.verdict.word {
+        VerdictWord::Met | VerdictWord::NoRequirement => Ending::Done,
+        VerdictWord::NotMet => Ending::NotMet,
+        VerdictWord::Undecided => Ending::Undecided,
+    })
 }
 
 /// A table that has more samples than the run that is to continue it.

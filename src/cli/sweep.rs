@@ -1,7 +1,7 @@
 //! `reeldown sweep`: the design space along one or two paths.
 
 use super::arguments::SweepArguments;
-use super::figure_files::write_figures;
+use super::figure_files::write_report_figures;
 use super::output::{say, say_error, say_notes};
 use super::run::quoted;
 use super::watch::{Watch, stop_on_interrupt};
@@ -11,7 +11,7 @@ use crate::campaign::{self, Progress};
 use crate::error::{Error, Result};
 use crate::findings::sweep::{SweepFinding, sweep as findings};
 use crate::render;
-use crate::store::{Field, refuse_obstacle, write_table, write_text};
+use crate::store::{Contents, Field, ResultDirectory, write_table};
 use crate::study::{Over, Study, design_path, option_error};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -37,18 +37,25 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Ending> {
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from("runs").join(format!("{}-sweep", arguments.study.name())));
-    for name in [TABLE, FINDINGS, REPORT] {
-        refuse_obstacle(&directory.join(name))?;
-    }
+    let contents = Contents {
+        kind: "sweep",
+        study: &study.title,
+        files: &[TABLE, FINDINGS, REPORT],
+        force: arguments.force,
+    };
+    let directory = ResultDirectory::open(&directory, contents)?;
     say_notes(&study);
     let progress = Arc::new(Progress::default());
     stop_on_interrupt(&progress)?;
     let finding = campaign::with_threads(arguments.threads.asked(), || {
         let descents = samples.unwrap_or(0) * grid.cells().len() as u64;
-        let _watch = Watch::start(&progress, descents, "sweeping");
+        let watch = Watch::start(&progress, descents, "sweeping");
         let cells = run_sweep(&study, &grid, samples, &progress)?;
-        let command = command(arguments);
-        cells.map(|cells| findings(&study, &grid, &cells, samples, command)).transpose()
+        drop(watch);
+        match cells {
+            Some(cells) => findings(&study, &grid, &cells, samples, command(arguments), &progress),
+            None => Ok(None),
+        }
     })??;
     let Some(finding) = finding else {
         say_error("stopped before the sweep was complete; nothing was written");
@@ -56,11 +63,11 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Ending> {
     };
     let json = serde_json::to_string_pretty(&finding)
         .map_err(|reason| Error::argument(format!("the sweep cannot be written: {reason}")))?;
-    write(&directory, &study, &finding, &json)?;
+    let report = directory.path().join(REPORT);
+    write(directory, &study, &finding, &json)?;
     if arguments.json {
         return done(&json);
     }
-    let report = directory.join(REPORT);
     say(&format!("{}\nreport: {}", render::sweep_terminal(&finding), report.display()))?;
     Ok(Ending::Done)
 }
@@ -158,12 +165,18 @@ fn command(arguments: &SweepArguments) -> String {
     words.join(" ")
 }
 
-fn write(directory: &Path, study: &Study, finding: &SweepFinding, json: &str) -> Result<()> {
-    write_text(&directory.join(FINDINGS), &format!("{json}\n"))?;
+fn write(
+    directory: ResultDirectory,
+    study: &Study,
+    finding: &SweepFinding,
+    json: &str,
+) -> Result<()> {
+    directory.write_text(FINDINGS, &format!("{json}\n"))?;
     let figures = render::sweep_figures(finding);
-    write_figures(&directory.join("figures"), &figures)?;
-    write_text(&directory.join(REPORT), &render::sweep_markdown(finding, &figures))?;
-    write_long_table(&directory.join(TABLE), study, finding)
+    write_report_figures(&directory, &figures)?;
+    directory.write_text(REPORT, &render::sweep_markdown(finding, &figures))?;
+    write_long_table(&directory.table(TABLE)?, study, finding)?;
+    directory.finish()
 }
 
 /// One row of the long table: a number of a cell.
@@ -210,6 +223,16 @@ fn write_long_table(path: &Path, study: &Study, finding: &SweepFinding) -> Resul
                 counts: Some((counts.breaches, counts.faults)),
             });
         }
+        if let (Some(estimate), Some(counts)) = (&cell.confirmed, &cell.confirmed_counts) {
+            rows.push(Row {
+                cell: k,
+                kind: "confirmed probability",
+                name: "any".to_owned(),
+                value: estimate.value,
+                interval: estimate.interval.interval().map(|i| (i.lower, i.upper)),
+                counts: Some((counts.breaches, counts.faults)),
+            });
+        }
     }
     let number =
         |read: &dyn Fn(&Row) -> Option<f64>| Field::Number(rows.iter().map(read).collect());
@@ -235,6 +258,9 @@ fn write_long_table(path: &Path, study: &Study, finding: &SweepFinding) -> Resul
     parents.0.insert("command".to_owned(), finding.reproduction.command.clone());
     if let Some(samples) = finding.samples {
         parents.0.insert("samples".to_owned(), samples.to_string());
+    }
+    if let Some(samples) = finding.confirming_samples {
+        parents.0.insert("confirming_samples".to_owned(), samples.to_string());
     }
     write_table(path, columns, parents.entries())
 }

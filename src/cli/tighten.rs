@@ -10,9 +10,13 @@ use crate::error::{Error, Result};
 use crate::findings::known::GoAnswer;
 use crate::findings::tighten::{TightenFinding, tighten as findings};
 use crate::render;
-use crate::store::write_text;
+use crate::store::{Contents, ResultDirectory};
 use std::sync::Arc;
 
+/// The findings as one tree.
+const FINDINGS: &str = "tighten.json";
+/// The report.
+const REPORT: &str = "tighten.md";
 /// Descents that a search takes, about: what the progress bar goes by.
 const EVALUATIONS: u64 = 250;
 
@@ -22,6 +26,14 @@ pub(super) fn tighten(arguments: &TightenArguments) -> Result<Ending> {
     let moves = moves(&arguments.moves)?.map(|statement| ("--move", statement));
     let study = arguments.study.load(&target.chain(moves).collect::<Vec<_>>())?;
     study.design.validate()?;
+    let contents = Contents {
+        kind: "tighten",
+        study: &study.title,
+        files: &[FINDINGS, REPORT],
+        force: arguments.force,
+    };
+    let directory = arguments.out.as_ref().map(|path| ResultDirectory::open(path, contents));
+    let directory = directory.transpose()?;
     say_notes(&study);
     let progress = Arc::new(Progress::default());
     stop_on_interrupt(&progress)?;
@@ -36,9 +48,10 @@ pub(super) fn tighten(arguments: &TightenArguments) -> Result<Ending> {
     };
     let finding = findings(&study, &found, command(arguments))?;
     let json = render::json(&finding)?;
-    if let Some(directory) = &arguments.out {
-        write_text(&directory.join("tighten.json"), &json)?;
-        write_text(&directory.join("tighten.md"), &render::tighten_markdown(&finding))?;
+    if let Some(directory) = directory {
+        directory.write_text(FINDINGS, &json)?;
+        directory.write_text(REPORT, &render::tighten_markdown(&finding))?;
+        directory.finish()?;
     }
     if arguments.json {
         done(json.trim_end())?;

@@ -4,7 +4,7 @@
 use super::CONFIDENCE;
 use super::trade::{Paired, TradePoint, limit_shares};
 use crate::campaign::common_numbers::Event;
-use crate::campaign::trade::{Sweep, TradeOutcomes};
+use crate::campaign::trade::{Sweep, TradeOutcomes, design_value_anew};
 use crate::error::Result;
 use crate::numerics::elementary::ln;
 use crate::numerics::interval::{Earned, Estimate};
@@ -23,9 +23,9 @@ pub struct DesignValueFinding {
     pub range: (f64, f64),
     /// The value at which P(any breach) is least, SI.
     pub best: Estimate,
-    /// P(any breach) there.
+    /// P(any breach) there, at points that the search has not seen.
     pub probability: Estimate,
-    /// P there less P now, by common random numbers.
+    /// P there less P now, at the same points.
     pub difference: Estimate,
     /// P(any breach) over the range.
     pub points: Vec<TradePoint>,
@@ -78,10 +78,15 @@ pub(super) fn design_value(
     });
     let none = || Estimate::none("no best value was found");
     let (probability, difference) = match near {
-        Some(setting) => (
-            paired.probability(&setting.breaches, Event::Any)?,
-            paired.difference(&outcomes.base, &setting.breaches, Event::Any)?,
-        ),
+        Some(setting) => {
+            let target = sweep.range.target;
+            let (base, there) = design_value_anew(study, target, setting.value, rows as u64)?;
+            let independent = Paired { replicates: 1 };
+            (
+                independent.probability(&there, Event::Any)?,
+                independent.difference(&base, &there, Event::Any)?,
+            )
+        }
         None => (none(), none()),
     };
     Ok(DesignValueFinding {

@@ -33,8 +33,10 @@ pub struct RareFinding {
 /// The most likely way to breach.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DesignPointFinding {
-    /// Distance from the origin in standard deviations, β.
+    /// Distance from the origin in standard deviations, β; negative where the medians breach.
     pub reliability_index: f64,
+    /// Whether the medians breach: the point is then the nearest that does not.
+    pub medians_breach: bool,
     /// Every input at the point, the most important first.
     pub inputs: Vec<DesignPointInput>,
     /// Outcomes of the flight at the point by column name, SI; empty if it could not be computed.
@@ -101,7 +103,7 @@ fn design_point(
     breach: &MostLikelyBreach,
     nominal: Option<&Outcome>,
 ) -> DesignPointFinding {
-    let MostLikelyBreach { point, draw, flight } = breach;
+    let MostLikelyBreach { point, medians_breach, draw, flight } = breach;
     let mut inputs: Vec<DesignPointInput> = study
         .inputs
         .iter()
@@ -122,7 +124,8 @@ fn design_point(
     });
     DesignPointFinding {
         reliability_index: point.reliability_index,
-        statement: story(study, &inputs, point.reliability_index, flight, nominal),
+        medians_breach: *medians_breach,
+        statement: story(study, &inputs, point.reliability_index, *medians_breach, flight, nominal),
         flight: outcomes.unwrap_or_default(),
         inputs,
     }

@@ -13,19 +13,27 @@ const TOLD: usize = 6;
 const LEAST_TOLD: f64 = 0.02;
 
 /// The story of a design point at `distance` standard deviations, with the flight there and the nominal
-/// one where they could be computed.
+/// one where they could be computed. Where the medians breach it is the nearest way *not* to, and is called that.
 pub(super) fn story(
     study: &Study,
     inputs: &[DesignPointInput],
     distance: f64,
+    medians_breach: bool,
     flight: Option<&Outcome>,
     nominal: Option<&Outcome>,
 ) -> String {
     let told: Vec<&DesignPointInput> =
         inputs.iter().take(TOLD).filter(|input| input.importance >= LEAST_TOLD).collect();
     let parts: Vec<String> = told.iter().filter_map(|input| part(study, input)).collect();
+    let point = match medians_breach {
+        false => "The most likely way to breach",
+        true => {
+            "The medians breach: with every input at its median the limit is exceeded, and no unusual values are \
+             needed. The nearest way to keep it"
+        }
+    };
     let mut text = format!(
-        "The most likely way to breach lies {} standard deviations from the medians: {}.",
+        "{point} lies {} standard deviations from the medians: {}.",
         number(distance.abs(), 3),
         parts.join("; ")
     );

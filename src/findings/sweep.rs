@@ -3,10 +3,10 @@
 use super::CONFIDENCE;
 use super::demonstration::percent;
 use super::known::{GoAnswer, answer, stated};
-use super::sweep_best::{BestFinding, best, choice, lines};
+use super::sweep_best::{BestFinding, best, choice, lines, searched};
 use super::trade::proportion;
-use crate::campaign::sweep::{Cell, Grid, Meaning, Sampled};
-use crate::campaign::{self};
+use crate::campaign::sweep::{Cell, Grid, Meaning, confirm, confirming_samples};
+use crate::campaign::{self, Progress};
 use crate::descent::OutcomeQuantity;
 use crate::descent::reference::trajectory;
 use crate::error::Result;
@@ -32,6 +32,8 @@ pub struct SweepFinding {
     pub limits: Vec<LimitFinding>,
     /// Samples in each cell; `None` if only nominal descents were asked for.
     pub samples: Option<u64>,
+    /// Samples of each setting that was found by looking over the cells and estimated anew; `None` if there is none.
+    pub confirming_samples: Option<u64>,
     /// Largest acceptable probability of any breach, and the confidence with which it is to be shown.
     pub required: Option<(f64, f64)>,
     /// How the numbers were obtained, and what they do not say.
@@ -107,13 +109,18 @@ pub struct CellFinding {
     pub limiting: Option<usize>,
     /// P(any breach); `None` without samples.
     pub any: Option<Estimate>,
+    /// P(any breach) at points that the search has not seen: of the best cell of each line, the one with the smallest P
+    /// and those that seemed to meet the requirement.
+    pub confirmed: Option<Estimate>,
+    /// Breaches, faults and samples behind it.
+    pub confirmed_counts: Option<Proportion>,
     /// P of each limit's breach.
     pub each: Vec<Estimate>,
     /// Breaches, faults and samples of any and of each limit.
     pub counts: Vec<Proportion>,
     /// Quantiles of each limit's outcome: 5 %, 50 %, 95 %.
     pub quantiles: Vec<Option<[f64; 3]>>,
-    /// Whether the requirement is demonstrated here.
+    /// Whether the requirement is demonstrated here; where it seemed to be, by the points that the search has not seen.
     pub answer: GoAnswer,
 }
 
@@ -130,7 +137,7 @@ pub struct CourseFinding {
     pub fluid_temperature_k: Vec<f64>,
 }
 
-/// Everything there is to say of a sweep.
+/// Everything there is to say of a sweep, what was found by looking estimated anew. `None` if `progress` asks for a stop.
 ///
 /// # Errors
 /// If a statistic refuses the study's requirement.
@@ -140,22 +147,49 @@ pub fn sweep(
     cells: &[Cell],
     samples: Option<u64>,
     command: String,
-) -> Result<SweepFinding> {
+    progress: &Progress,
+) -> Result<Option<SweepFinding>> {
     let requirement = stated(study)?;
-    let cells: Vec<(CellFinding, Option<&Sampled>)> = cells
+    let mut found: Vec<CellFinding> = cells
         .iter()
-        .map(|cell| {
-            let finding = cell_finding(study, grid, cell, requirement.as_ref())?;
-            Ok((finding, cell.sampled.as_ref()))
-        })
+        .map(|cell| cell_finding(study, grid, cell, requirement.as_ref()))
         .collect::<Result<_>>()?;
     let choice = choice(grid);
-    let best = lines(grid, choice).iter().map(|line| best(grid, choice, line, &cells)).collect();
+    let lines = lines(grid, choice);
+    let xs = &grid.paths[choice].values;
+    let searched: Vec<(Estimate, Option<usize>)> =
+        lines.iter().map(|line| searched(xs, line, cells)).collect();
+    let nearest: Vec<Option<usize>> = searched.iter().map(|(_, at)| *at).collect();
+    let mut confirming = None;
+    if let Some(samples) = samples {
+        let anew = found_by_looking(&lines, &nearest, &found);
+        let settings = anew.iter().map(Vec::len).sum::<usize>() as u64;
+        let rows = confirming_samples(samples, cells.len() as u64, settings);
+        let values: Vec<Vec<Vec<f64>>> = anew
+            .iter()
+            .map(|line| line.iter().map(|&cell| found[cell].values.clone()).collect())
+            .collect();
+        let Some(counts) = confirm(study, grid, &values, rows, progress)? else { return Ok(None) };
+        for (&cell, counts) in anew.iter().flatten().zip(counts.iter().flatten()) {
+            let known = &mut found[cell];
+            if known.answer == GoAnswer::Go {
+                known.answer = answer(requirement.as_ref(), counts)?;
+            }
+            known.confirmed = Some(proportion(counts)?);
+            known.confirmed_counts = Some(*counts);
+        }
+        confirming = (settings > 0).then_some(rows);
+    }
+    let best = lines
+        .iter()
+        .zip(searched)
+        .map(|(line, searched)| best(grid, choice, line, &found, searched))
+        .collect();
     let courses = match &grid.paths[..] {
         [_] => courses(study, grid),
         _ => Vec::new(),
     };
-    Ok(SweepFinding {
+    Ok(Some(SweepFinding {
         format: 1,
         title: study.title.clone(),
         paths: (0..grid.paths.len()).map(|k| path_finding(study, grid, k)).collect(),
@@ -172,9 +206,10 @@ pub fn sweep(
             })
             .collect(),
         samples,
+        confirming_samples: confirming,
         required: requirement.map(|required| (required.failure_limit(), required.confidence)),
-        method: method(study, samples, requirement.as_ref()),
-        cells: cells.into_iter().map(|(finding, _)| finding).collect(),
+        method: method(study, samples, confirming, requirement.as_ref()),
+        cells: found,
         choice,
         best,
         courses,
@@ -185,7 +220,32 @@ pub fn sweep(
             files: study.file_digests(),
             command,
         },
-    })
+    }))
+}
+
+/// The cells of every line that were found by looking over them: the best one, those that seem to meet the requirement,
+/// and the one with the smallest P of all.
+fn found_by_looking(
+    lines: &[Vec<usize>],
+    nearest: &[Option<usize>],
+    cells: &[CellFinding],
+) -> Vec<Vec<usize>> {
+    let smallest = smallest(cells);
+    let of_line = |(line, &nearest): (&Vec<usize>, &Option<usize>)| {
+        let chosen = |&cell: &usize| {
+            nearest == Some(cell) || smallest == Some(cell) || cells[cell].answer == GoAnswer::Go
+        };
+        line.iter().copied().filter(chosen).collect()
+    };
+    lines.iter().zip(nearest).map(of_line).collect()
+}
+
+/// The cell with the fewest breaches, faults counted; `None` where every sample of every cell breaches.
+fn smallest(cells: &[CellFinding]) -> Option<usize> {
+    let worst = |k: usize| cells[k].counts.first().map_or(u64::MAX, Proportion::most_breaches);
+    let found = (0..cells.len()).min_by_key(|&k| worst(k))?;
+    let any = cells[found].counts.first()?;
+    (any.most_breaches() < any.samples).then_some(found)
 }
 
 fn path_finding(study: &Study, grid: &Grid, k: usize) -> PathFinding {
@@ -221,7 +281,12 @@ fn path_finding(study: &Study, grid: &Grid, k: usize) -> PathFinding {
     }
 }
 
-fn method(study: &Study, samples: Option<u64>, required: Option<&Requirement>) -> Vec<String> {
+fn method(
+    study: &Study,
+    samples: Option<u64>,
+    confirming: Option<u64>,
+    required: Option<&Requirement>,
+) -> Vec<String> {
     let mut lines = vec![format!(
         "Nominal: one descent a cell by the plain integrator, {} model, every other input at its nominal \
          value.",
@@ -231,10 +296,12 @@ fn method(study: &Study, samples: Option<u64>, required: Option<&Requirement>) -
         lines.push(format!(
             "Probabilities: {samples} plain Monte Carlo samples a cell, the same points in every cell (common \
              random numbers), so that the map is smooth and neighbours differ by their design alone. The \
-             errors of neighbouring cells are therefore alike: the whole map may lie a little high or low."
+             errors of all cells are therefore alike: the whole map may lie a little high or low, and its cells \
+             do not confirm each other."
         ));
         lines.push(format!(
-            "Intervals: Clopper-Pearson, {} %, each cell by itself.",
+            "Intervals: Clopper-Pearson, {} %, each cell by itself; of many cells some intervals miss, and as the \
+             cells share their points, they miss together.",
             100.0 * CONFIDENCE
         ));
         lines.push(
@@ -244,12 +311,22 @@ fn method(study: &Study, samples: Option<u64>, required: Option<&Requirement>) -
                 .to_owned(),
         );
     }
+    if let Some(rows) = confirming {
+        lines.push(format!(
+            "What was found by looking over the cells has the luck of their points on its side: the best cell of each \
+             line, the cell with the smallest P and every cell that seems to meet the requirement are estimated anew \
+             with {rows} plain Monte Carlo samples that the search has not seen. P at a best value is that estimate. \
+             Cells of one line share these points and err together; lines are independent of each other."
+        ));
+    }
     if let (Some(required), Some(_)) = (required, samples) {
         lines.push(format!(
-            "A cell meets the requirement if P(any breach) ≤ {} is demonstrated there at {} confidence, each \
-             cell by itself: of many cells that just miss it, some will seem to meet it.",
+            "A cell meets the requirement if the samples that the search has not seen demonstrate P(any breach) ≤ {} \
+             there at {} confidence. This holds for each cell by itself and not for all at once: of many cells that \
+             just miss the requirement, up to {} will be said to meet it.",
             percent(required.failure_limit()),
-            percent(required.confidence)
+            percent(required.confidence),
+            percent(1.0 - required.confidence)
         ));
     }
     lines
@@ -298,6 +375,8 @@ fn cell_finding(
         relative_margins,
         limiting,
         any: counts.first().map(proportion).transpose()?,
+        confirmed: None,
+        confirmed_counts: None,
         each: counts.iter().skip(1).map(proportion).collect::<Result<_>>()?,
         answer: match counts.first() {
             Some(any) => answer(requirement, any)?,

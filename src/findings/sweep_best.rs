@@ -3,7 +3,7 @@
 use super::design_value::best_value;
 use super::known::GoAnswer;
 use super::sweep::CellFinding;
-use crate::campaign::sweep::{GROUPS, Grid, Meaning, Sampled};
+use crate::campaign::sweep::{Cell, GROUPS, Grid, Meaning, Sampled};
 use crate::numerics::interval::{Earned, Estimate};
 use serde::Serialize;
 
@@ -14,9 +14,9 @@ pub struct BestFinding {
     pub given: Option<f64>,
     /// The value at which P(any breach) is least.
     pub best: Estimate,
-    /// P(any breach) at the nearest setting.
+    /// P(any breach) at the nearest setting, at points that the search has not seen.
     pub probability: Option<Estimate>,
-    /// Ends of the settings at which the requirement is demonstrated.
+    /// Ends of the settings at which the requirement is demonstrated, at points that the search has not seen.
     pub met: Option<(f64, f64)>,
     /// Ends of the settings at which it is not refuted.
     pub open: Option<(f64, f64)>,
@@ -63,23 +63,31 @@ fn longest_run(line: &[usize], holds: impl Fn(usize) -> bool) -> Option<(usize, 
     longest
 }
 
-/// The best value of one line of cells.
-pub(super) fn best(
-    grid: &Grid,
-    choice: usize,
-    line: &[usize],
-    cells: &[(CellFinding, Option<&Sampled>)],
-) -> BestFinding {
-    let xs = &grid.paths[choice].values;
-    let ends = |run: Option<(usize, usize)>| run.map(|(a, b)| (xs[a], xs[b]));
-    let given = (grid.paths.len() == 2).then(|| cells[line[0]].0.values[1 - choice]);
-    let sampled: Option<Vec<&Sampled>> = line.iter().map(|&cell| cells[cell].1).collect();
+/// The setting of one line of cells with the least P(any breach), and the cell nearest to it.
+pub(super) fn searched(xs: &[f64], line: &[usize], cells: &[Cell]) -> (Estimate, Option<usize>) {
+    let sampled: Option<Vec<&Sampled>> =
+        line.iter().map(|&cell| cells[cell].sampled.as_ref()).collect();
     let (best, at) = match sampled {
         Some(sampled) => least(xs, &sampled),
         None => (Estimate::none("no samples were asked for"), None),
     };
+    (best, at.map(|at| line[at]))
+}
+
+/// The best value of one line of cells, of which those found by looking have been estimated anew; what was found is
+/// [`searched`]'s.
+pub(super) fn best(
+    grid: &Grid,
+    choice: usize,
+    line: &[usize],
+    cells: &[CellFinding],
+    (best, at): (Estimate, Option<usize>),
+) -> BestFinding {
+    let xs = &grid.paths[choice].values;
+    let ends = |run: Option<(usize, usize)>| run.map(|(a, b)| (xs[a], xs[b]));
+    let given = (grid.paths.len() == 2).then(|| cells[line[0]].values[1 - choice]);
     let smallest_margin = |k: usize| {
-        let cell = &cells[line[k]].0;
+        let cell = &cells[line[k]];
         cell.relative_margins[cell.limiting?]
     };
     let margins: Vec<f64> =
@@ -88,10 +96,10 @@ pub(super) fn best(
     BestFinding {
         given,
         best,
-        probability: at.and_then(|at| cells[line[at]].0.any.clone()),
-        met: ends(longest_run(line, |cell| cells[cell].0.answer == GoAnswer::Go)),
+        probability: at.and_then(|at| cells[at].confirmed.clone()),
+        met: ends(longest_run(line, |cell| cells[cell].answer == GoAnswer::Go)),
         open: ends(longest_run(line, |cell| {
-            matches!(cells[cell].0.answer, GoAnswer::Go | GoAnswer::Undecided)
+            matches!(cells[cell].answer, GoAnswer::Go | GoAnswer::Undecided)
         })),
         nominal: roomiest.filter(|&k| margins[k].is_finite()).map(|k| (xs[k], margins[k])),
         feasible: feasible(xs, &margins),

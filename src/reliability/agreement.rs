@@ -12,6 +12,10 @@ use crate::error::{Error, Result};
 use crate::numerics::special::normal;
 use serde::Serialize;
 
+/// Estimates nearer to each other than this share are the same number: sums of many terms differ by as much according to
+/// the order in which they are summed.
+const ROUNDING: f64 = 1e-12;
+
 /// One pair of estimates compared.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
@@ -91,7 +95,8 @@ struct Side {
 impl Side {
     fn compared_with(&self, other: &Side, z: f64) -> Comparison {
         let (high, low) = if self.least >= other.least { (self, other) } else { (other, self) };
-        let gap = (high.least - low.most).max(0.0);
+        let gap = high.least - low.most;
+        let gap = if gap > ROUNDING * high.least { gap } else { 0.0 };
         let reach = z * (high.below * high.below + low.above * low.above).sqrt();
         let difference = match (gap > 0.0, reach > 0.0) {
             (false, _) => 0.0,
@@ -135,5 +140,16 @@ mod tests {
         let all = check(&[importance, form, subset, nothing]);
         assert_eq!((all.agrees, all.comparisons.len(), all.left_out.len()), (Some(false), 3, 1));
         assert_eq!(check(&[]).agrees, None);
+    }
+
+    #[test]
+    fn analytic_rounding_is_no_difference() {
+        // 1 − 2⁻⁵² and 1, each at the end of its interval: nothing on the side of the other.
+        let one = estimate(Method::SubsetSimulation, 1.0, Some((1.0, 1.0)));
+        let below = 1.0 - f64::EPSILON;
+        let other = estimate(Method::DirectionalSampling, below, Some((0.9, below)));
+        assert_eq!(agreement(&[one.clone(), other], 0.01).unwrap().agrees, Some(true));
+        let apart = estimate(Method::DirectionalSampling, 0.999, Some((0.9, 0.999)));
+        assert_eq!(agreement(&[one, apart], 0.01).unwrap().agrees, Some(false));
     }
 }

@@ -112,6 +112,9 @@ impl fmt::Display for Unconverged {
 pub struct DesignPoints {
     /// Distinct converged points, nearest first (by β).
     pub points: Vec<DesignPoint>,
+    /// Whether the event happens at the origin, where every input is at its median: the points of a limit that is breached
+    /// there are the nearest that do *not* breach it.
+    pub origin_breaches: bool,
     /// Starts that gave none: (limit or first of the intersection, why).
     pub unconverged: Vec<(usize, Unconverged)>,
     /// Points evaluated.
@@ -163,15 +166,16 @@ pub fn design_points(
         true => members.iter().map(|&limit| vec![limit]).collect(),
         false => vec![members],
     };
-    let (mut points, mut unconverged) = (Vec::new(), Vec::new());
+    let (mut points, mut unconverged, mut origin_breaches) = (Vec::new(), Vec::new(), false);
     for limits in groups {
-        let (found, failed) = search(&mut evaluator, &limits, options)?;
-        unconverged.extend(failed.into_iter().map(|why| (limits[0], why)));
-        points.extend(distinct(found));
+        let found = search(&mut evaluator, &limits, options)?;
+        unconverged.extend(found.failed.into_iter().map(|why| (limits[0], why)));
+        points.extend(distinct(found.points));
+        origin_breaches |= found.origin_breaches;
     }
     points.sort_by(|a, b| a.reliability_index.total_cmp(&b.reliability_index));
     let Evaluator { evaluations, faults, .. } = evaluator;
-    Ok(DesignPoints { points, unconverged, evaluations, faults })
+    Ok(DesignPoints { points, origin_breaches, unconverged, evaluations, faults })
 }
 
 /// Distance below which two converged points are one.

@@ -50,8 +50,16 @@ struct Search {
     outcome: Option<std::result::Result<DesignPoint, Unconverged>>,
 }
 
-/// What the starts of one search found, and why the others did not.
-pub(super) type Found = (Vec<DesignPoint>, Vec<Unconverged>);
+/// What one search found.
+#[derive(Default)]
+pub(super) struct Found {
+    /// The points on which starts converged.
+    pub points: Vec<DesignPoint>,
+    /// Why the others did not.
+    pub failed: Vec<Unconverged>,
+    /// Whether the origin breaches every limit that was asked for.
+    pub origin_breaches: bool,
+}
 
 /// Runs every start in lockstep, so that gradients and line searches come in large batches.
 pub(super) fn search(
@@ -64,6 +72,7 @@ pub(super) fn search(
         .into_iter()
         .map(|point| Search { curvature: Curvature::new(point.len()), point, outcome: None })
         .collect();
+    let mut all = Found::default();
     for iteration in 0..options.iterations {
         let active: Vec<usize> =
             (0..searches.len()).filter(|&k| searches[k].outcome.is_none()).collect();
@@ -74,8 +83,12 @@ pub(super) fn search(
         let planes = linearise(evaluator, &points, limits, options.difference_step)?;
         let mut steps: Vec<(usize, Step)> = Vec::new();
         for ((&k, point), planes) in active.iter().zip(&points).zip(planes) {
-            if joint && iteration == 0 && k == 0 && planes.iter().all(|plane| plane.margin < 0.0) {
-                return Ok((Vec::new(), vec![Unconverged::OriginBreaches]));
+            if iteration == 0 && k == 0 && planes.iter().all(|plane| plane.margin < 0.0) {
+                all.origin_breaches = true;
+                if joint {
+                    all.failed.push(Unconverged::OriginBreaches);
+                    return Ok(all);
+                }
             }
             let curvature = &mut searches[k].curvature;
             match Step::new(point, &planes, curvature, options.start_radius + 1.0) {
@@ -92,14 +105,13 @@ pub(super) fn search(
         }
         line_search(evaluator, &mut searches, steps, limits)?;
     }
-    let (mut found, mut failed) = (Vec::new(), Vec::new());
     for search in searches {
         match search.outcome.unwrap_or(Err(Unconverged::Iterations)) {
-            Ok(point) => found.push(point),
-            Err(why) => failed.push(why),
+            Ok(point) => all.points.push(point),
+            Err(why) => all.failed.push(why),
         }
     }
-    Ok((found, failed))
+    Ok(all)
 }
 
 /// A search direction with the merit function that judges it.

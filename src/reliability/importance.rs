@@ -1,6 +1,9 @@
 //! Importance sampling around design points: a mixture of unit Gaussians, one a design point, and a
 //! defensive share of the nominal density that bounds every weight.
 //!
+//! Where the origin breaches, a design point is the nearest point that does *not*: the samples around it show how often
+//! there is no breach, and where that is the exception the probability of a breach is what is left.
+//!
 //! Unfit for limits that curve around the origin in many dimensions (benchmark RP63, a shell of 100): breaches
 //! are found off every design point, their effective number is small, and the interval is withdrawn.
 //!
@@ -145,7 +148,9 @@ pub fn sample_around(
     }
     let mixture = Mixture::new(found, share);
     let mut evaluator = Evaluator::new(state, event, FaultReading::Kept)?;
-    let (mut safe, mut breach) = (WeightedBreaches::default(), WeightedBreaches::default());
+    // Breaches for certain, and with every fault counted too; likewise points without a breach.
+    let (mut breach, mut possible) = (WeightedBreaches::default(), WeightedBreaches::default());
+    let (mut clean, mut possibly_clean) = (breach.clone(), breach.clone());
     let mut stream = keyed(options.seed, Purpose::ImportanceSampling);
     let mut values = Vec::new();
     let mut first = 0;
@@ -160,27 +165,65 @@ pub fn sample_around(
             .collect();
         evaluator.evaluate(&Columns::from_rows(&points), &mut values)?;
         for (point, &margin) in points.iter().zip(&values) {
-            if margin < 0.0 || margin.is_nan() {
-                let weight = mixture.weight(point);
+            if margin >= 0.0 && !found.origin_breaches {
+                continue;
+            }
+            let weight = mixture.weight(point);
+            if margin.is_nan() {
+                possible.weights.push(weight);
+                possibly_clean.weights.push(weight);
+            } else if margin < 0.0 {
                 breach.weights.push(weight);
-                if margin < 0.0 {
-                    safe.weights.push(weight);
-                }
+                possible.weights.push(weight);
+            } else {
+                clean.weights.push(weight);
+                possibly_clean.weights.push(weight);
             }
         }
         first += count;
     }
-    safe.samples = options.samples;
-    breach.samples = options.samples;
+    [&mut breach, &mut possible, &mut clean, &mut possibly_clean]
+        .into_iter()
+        .for_each(|of| of.samples = options.samples);
     let (evaluations, faults) = (evaluator.evaluations, evaluator.faults);
-    let mut estimate = combined(method, event, &safe, &breach, options.confidence, &options.checks);
+    let of = |certain: &WeightedBreaches, possible: &WeightedBreaches| {
+        combined(method, event, certain, possible, options.confidence, &options.checks)
+    };
+    // In many dimensions the origin can breach and hardly anything else: then breaches are the exception all the same.
+    let mut estimate = match found.origin_breaches && breach.total() > clean.total() {
+        true => of_the_complement(of(&clean, &possibly_clean)),
+        false => of(&breach, &possible),
+    };
     estimate.evaluations = evaluations + found.evaluations;
     estimate.faults = faults + found.faults;
     estimate.diagnostics.extend(found.diagnostics());
     Ok(estimate)
 }
 
-/// The estimate from weighted breaches without faults and with them.
+/// The estimate of an event from that of its complement, in which faults are read the other way round.
+fn of_the_complement(estimate: Estimate) -> Estimate {
+    let rest = |p: Option<f64>| p.map(|p| 1.0 - p);
+    let interval = match estimate.interval {
+        Earned::Interval(of) => {
+            Interval { lower: 1.0 - of.upper, upper: 1.0 - of.lower, ..of }.into()
+        }
+        Earned::None(why) => Earned::none(format!("of the points without a breach: {why}")),
+    };
+    let mut diagnostics = vec!["the medians breach: points without a breach were sampled".into()];
+    diagnostics.extend(
+        estimate.diagnostics.iter().map(|line| line.replace("breaches", "points without a breach")),
+    );
+    Estimate {
+        probability: rest(estimate.probability_with_faults),
+        probability_with_faults: rest(estimate.probability),
+        interval,
+        diagnostics,
+        ..estimate
+    }
+}
+
+/// The estimate from weighted breaches without faults and with them. A weighted mean above 1 is 1: the interval ends
+/// there too.
 pub(super) fn combined(
     method: Method,
     event: Event,
@@ -201,8 +244,8 @@ pub(super) fn combined(
     Estimate {
         method,
         event,
-        probability: Some(low.probability),
-        probability_with_faults: Some(high.probability),
+        probability: Some(low.probability.min(1.0)),
+        probability_with_faults: Some(high.probability.min(1.0)),
         standard_error: Some(low.standard_error),
         interval,
         evaluations: 0,

@@ -18,7 +18,8 @@ pub const LEAST: usize = 5;
 /// logarithms have skewness −0.04 ± 0.02 and excess kurtosis −0.05 ± 0.05, so n − 1 degrees of freedom would
 /// be right for the mean logarithm. Student's t takes two fewer, on the safe side: the centre's s²/2 rests on
 /// the same few replicates as the width, which Cox's formula neglects. A replicate of zero withdraws the
-/// interval: the logarithm has no say then.
+/// interval: the logarithm has no say then. So do replicates that all agree: a spread of zero is a lack of evidence
+/// and not certainty.
 ///
 /// Source: Cox's method (Land, Technometrics 14 (1972) 145; Olsson, J. Stat. Educ. 13 (2005), with
 /// Student's t in place of the normal quantile).
@@ -31,6 +32,8 @@ pub fn interval_of_replicates(replicates: &[f64], confidence: f64) -> (f64, f64,
         Earned::none(format!("fewer than {LEAST} replicates"))
     } else if empty > 0 {
         Earned::none(format!("{empty} of {n} replicates found no breach"))
+    } else if replicates.iter().all(|&p| p == replicates[0]) {
+        Earned::none(format!("all {n} replicates agree, so their spread shows nothing"))
     } else {
         let logarithms: Vec<f64> = replicates.iter().map(|&p| ln(p)).collect();
         let (m, s2) = moments(&logarithms);
@@ -66,6 +69,14 @@ mod tests {
         assert!((mean - 1e-4).abs() < 1e-18);
         assert!(interval.why_none().is_some());
         assert!(interval_of_replicates(&[1e-4, 2e-4], 0.95).2.why_none().is_some());
+    }
+
+    #[test]
+    fn property_agreement_earns_no_interval() {
+        for share in [1.0, 0.1, 3e-7] {
+            let interval = interval_of_replicates(&[share; 10], 0.95).2;
+            assert!(interval.why_none().is_some_and(|why| why.contains("agree")), "{interval:?}");
+        }
     }
 
     #[test]

@@ -15,9 +15,10 @@ use serde::Serialize;
 const METHOD: &str = "Student t over replicates";
 const METHOD_CLIPPED: &str = "Student t over replicates, clipped to [0, 1]";
 const METHOD_FEW: &str = "fewer than ten breaches: the wider of Student t over replicates and the exact binomial interval";
+const METHOD_FEW_CLEAN: &str = "fewer than ten samples without a breach: the wider of Student t over replicates and the exact binomial interval";
 const METHOD_FAULTS: &str = "Student t over replicates, faults counted both ways";
 
-/// Breaches below which replicates show too little of their own scatter: measured on counts of a Poisson law with
+/// Breaches, or samples without one, below which replicates show too little of their own scatter: measured on counts of a Poisson law with
 /// mean 3 to 8, Student's interval for 90 % holds 82 to 90 %.
 const FEW_BREACHES: u64 = 10;
 
@@ -110,7 +111,7 @@ pub fn from_replicate_counts(counts: &[Proportion], confidence: f64) -> Result<R
     widened_if_few(both, counts, confidence)
 }
 
-/// With [`FEW_BREACHES`] the interval takes in the exact one for as many independent samples. Neither design scatters
+/// With [`FEW_BREACHES`], or as few samples without one, the interval takes in the exact one for as many independent samples. Neither design scatters
 /// more than those by more than a small factor: a Latin hypercube by n/(n − 1) at most in variance, scrambled nets by e
 /// (Owen, *Ann. Statist.* 25, 1997; *J. Complexity* 14, 1998).
 fn widened_if_few(
@@ -119,16 +120,18 @@ fn widened_if_few(
     confidence: f64,
 ) -> Result<Replicated> {
     let sum = |of: fn(&Proportion) -> u64| counts.iter().map(of).sum::<u64>();
-    let breaches = sum(|count| count.breaches);
-    if let Earned::Interval(interval) = &mut found.probability.interval
-        && breaches < FEW_BREACHES
+    let together = Proportion::new(sum(|c| c.breaches), sum(|c| c.faults), sum(|c| c.samples))?;
+    let few = match (together.breaches < FEW_BREACHES, together.clean() < FEW_BREACHES) {
+        (true, _) => Some(METHOD_FEW),
+        (false, true) => Some(METHOD_FEW_CLEAN),
+        (false, false) => None,
+    };
+    if let (Earned::Interval(interval), Some(method)) = (&mut found.probability.interval, few)
+        && let Earned::Interval(exact) = together.interval(confidence)?
     {
-        let together = Proportion::new(breaches, sum(|c| c.faults), sum(|c| c.samples))?;
-        if let Earned::Interval(exact) = together.interval(confidence)? {
-            interval.lower = interval.lower.min(exact.lower);
-            interval.upper = interval.upper.max(exact.upper);
-            interval.method = METHOD_FEW;
-        }
+        interval.lower = interval.lower.min(exact.lower);
+        interval.upper = interval.upper.max(exact.upper);
+        interval.method = method;
     }
     Ok(found)
 }

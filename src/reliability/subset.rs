@@ -11,6 +11,9 @@
 //! breached there): walks by the least of several margins follow whichever margin falls first and lose
 //! the others (benchmark RP110).
 //!
+//! Where the first level alone sees the event often enough, its points are plain Monte Carlo: they are counted, and the
+//! interval is the exact one. Replicates near certainty agree with each other long before they are certain.
+//!
 //! Sources: Au and Beck, Probabilistic Engineering Mechanics 16 (2001) 263; Papaioannou, Betz, Zwirglmaier
 //! and Straub, Probabilistic Engineering Mechanics 41 (2015) 89, adaptive conditional sampling; Bréhier,
 //! Gazeau, Goudenège, Lelièvre and Rousset, Annals of Applied Probability 26 (2016) 3559, unbiasedness.
@@ -20,6 +23,7 @@ use super::estimate::{Estimate, Method};
 use super::event::{Evaluator, Event, FaultReading};
 use super::limit_state::LimitState;
 use super::log_replicates::{LEAST, interval_of_replicates};
+use super::probability::Proportion;
 use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
 use crate::numerics::elementary::exp;
@@ -56,6 +60,13 @@ impl Default for SubsetOptions {
     }
 }
 
+impl SubsetOptions {
+    /// Samples of a level that seed the next one.
+    fn seeds(&self) -> usize {
+        (self.samples_per_level as f64 * self.level_probability).round() as usize
+    }
+}
+
 /// Share of the union's probability below which the walk of one of its limits is not continued.
 const NEGLIGIBLE_SHARE: f64 = 1e-4;
 
@@ -73,8 +84,8 @@ pub fn subset_simulation(
     event: Event,
     options: &SubsetOptions,
 ) -> Result<Estimate> {
-    let seeds = (options.samples_per_level as f64 * options.level_probability).round();
-    if !(0.0 < options.level_probability && options.level_probability <= 0.5) || seeds < 2.0 {
+    if !(0.0 < options.level_probability && options.level_probability <= 0.5) || options.seeds() < 2
+    {
         return Err(Error::argument("subset simulation needs at least two seeds a level"));
     }
     if options.replicates < LEAST {
@@ -102,15 +113,20 @@ fn run(
     };
     let mut walks: Vec<Walk> = Vec::new();
     let mut values = Vec::new();
+    let (seeds, mut seen) = (options.seeds(), 0);
     for replicate in 0..options.replicates {
         let key = (replicate * (parts.len() + 1)) as u64;
         let points = first_level(options, key, state.dimension());
         evaluator.evaluate(&Columns::from_rows(&points), &mut values)?;
+        let breaches = values.iter().filter(|&&margin| margin < 0.0).count();
+        seen += breaches as u64;
+        // A union that breaches as often as a level needs is known well enough: its limits need no walks.
+        let enough = if breaches >= seeds { 0 } else { seeds };
         for (k, &part) in parts.iter().enumerate() {
             let own = stream(options.seed, Purpose::SubsetSimulation, key + 1 + k as u64);
             let mut walk = Walk::new(part, replicate, own, state.dimension());
             walk.samples = states(points.clone(), &values, &evaluator, part, reading, 0);
-            walk.descend(options);
+            walk.descend(options, enough);
             walks.push(walk);
         }
     }
@@ -136,7 +152,7 @@ fn run(
             give_up_negligible(&mut walks, replicate);
         }
     }
-    Ok(estimate(event, &walks, &evaluator, options))
+    estimate(event, &walks, seen, &evaluator, options)
 }
 
 /// The plain sample that all parts of a replicate start from.
@@ -192,23 +208,33 @@ fn give_up_negligible(walks: &mut [Walk], replicate: usize) {
     }
 }
 
+/// The estimate from walks that have ended; `seen` points of all first levels breach.
 fn estimate(
     event: Event,
     walks: &[Walk],
+    seen: u64,
     evaluator: &Evaluator,
     options: &SubsetOptions,
-) -> Estimate {
+) -> Result<Estimate> {
     let mut replicates = vec![0.0; options.replicates];
     let (mut stuck, mut vanished) = (0, 0);
     for walk in walks {
         if let Some(answer) = &walk.answer {
             replicates[walk.replicate] += answer.probability;
-            stuck += usize::from(answer.end == End::Stuck);
-            vanished += usize::from(answer.end == End::Vanished);
         }
+        stuck += usize::from(walk.ended(End::Stuck));
+        vanished += usize::from(walk.ended(End::Vanished));
     }
-    let (mean, standard_error, mut interval) =
-        interval_of_replicates(&replicates, options.confidence);
+    let plain = walks.iter().all(|walk| walk.level == 0 && walk.ended(End::Breach));
+    let (mean, standard_error, mut interval) = if plain {
+        let samples = (options.replicates * options.samples_per_level) as u64;
+        let mean = seen as f64 / samples as f64;
+        let counts = Proportion::new(seen, 0, samples)?;
+        let error = (mean * (1.0 - mean) / samples as f64).sqrt();
+        (mean, error, counts.interval(options.confidence)?)
+    } else {
+        interval_of_replicates(&replicates, options.confidence)
+    };
     let levels = walks.iter().map(|walk| walk.level + 1).max().unwrap_or(0);
     let mut diagnostics = vec![format!(
         "{} replicates of {} samples a level, at most {levels} levels",
@@ -222,7 +248,7 @@ fn estimate(
     if vanished > 0 {
         diagnostics.push(format!("{vanished} walks ended below {:e}", options.least_probability));
     }
-    Estimate {
+    Ok(Estimate {
         method: Method::SubsetSimulation,
         event,
         probability: Some(mean),
@@ -232,7 +258,7 @@ fn estimate(
         evaluations: evaluator.evaluations,
         faults: evaluator.faults,
         diagnostics,
-    }
+    })
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -297,6 +323,10 @@ impl Walk {
         }
     }
 
+    fn ended(&self, end: End) -> bool {
+        self.answer.as_ref().is_some_and(|answer| answer.end == end)
+    }
+
     /// One move of every chain, to be evaluated.
     fn propose(&mut self) -> Vec<Vec<f64>> {
         let kept = (1.0 - self.spread * self.spread).sqrt();
@@ -324,17 +354,18 @@ impl Walk {
         self.accepted += f64::from(accepted) / self.chains.len() as f64;
         self.samples.extend(self.chains.iter().cloned());
         if self.samples.len() >= options.samples_per_level {
-            self.descend(options);
+            self.descend(options, options.seeds());
         }
     }
 
-    fn descend(&mut self, options: &SubsetOptions) {
+    /// Ends the walk where at least `enough` of the level's samples breach, else goes a level down.
+    fn descend(&mut self, options: &SubsetOptions, enough: usize) {
         let n = self.samples.len();
-        let seeds = (options.samples_per_level as f64 * options.level_probability).round() as usize;
+        let seeds = options.seeds();
         self.samples.sort_by(|a, b| a.margin.total_cmp(&b.margin));
         let breaches = self.samples.iter().filter(|state| state.margin < 0.0);
         let shares: f64 = breaches.clone().map(|state| state.share).sum();
-        if breaches.count() >= seeds {
+        if breaches.count() >= enough {
             let probability = self.reached * shares / n as f64;
             self.answer = Some(Answer { probability, end: End::Breach });
             return;

@@ -4,6 +4,7 @@
 //! such weights make the sum, their variance is not the variance of what was not seen, and the interval
 //! is withdrawn.
 
+use super::probability::Proportion;
 use crate::numerics::elementary::{cbrt, exp, ln, ln_1p};
 use crate::numerics::interval::{Earned, Interval};
 use crate::numerics::special::student;
@@ -24,6 +25,9 @@ impl Default for WeightChecks {
         WeightChecks { effective_breaches: 100.0, largest_share: 0.05, tail_index: 0.7 }
     }
 }
+
+/// What a weight or a probability may differ from 1 by rounding.
+const ROUNDING: f64 = 1e-12;
 
 /// Weights p/q of the breaches among `samples` independent draws; the rest weigh zero.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -52,6 +56,11 @@ pub struct WeightSummary {
 }
 
 impl WeightedBreaches {
+    /// Sum of the weights.
+    pub fn total(&self) -> f64 {
+        self.weights.iter().sum()
+    }
+
     /// Estimate, error and interval at `confidence`.
     ///
     /// The interval corrects for the skewness γ of the draws, zeros included: their studentised mean
@@ -64,7 +73,7 @@ impl WeightedBreaches {
     /// the skewness; O'Neill, The American Statistician 68 (2014) 282, for the degrees of freedom.
     pub fn summary(&self, confidence: f64, checks: &WeightChecks) -> WeightSummary {
         let n = self.samples as f64;
-        let sum: f64 = self.weights.iter().sum();
+        let sum = self.total();
         let squares: f64 = self.weights.iter().map(|w| w * w).sum();
         let probability = if n > 0.0 { sum / n } else { 0.0 };
         let variance = (squares / n - probability * probability).max(0.0) / (n - 1.0).max(1.0);
@@ -83,12 +92,21 @@ impl WeightedBreaches {
         } else if largest_share > checks.largest_share {
             Some(format!("one sample carries {:.1} % of the estimate", 100.0 * largest_share))
         } else {
-            tail_index.filter(|&k| k > checks.tail_index).map(|k| {
+            let heavy = tail_index.filter(|&k| k > checks.tail_index).map(|k| {
                 format!("the weights' tail index {k:.2} is above {:.2}", checks.tail_index)
-            })
+            });
+            heavy.or_else(|| self.unseen_remainder(probability, checks))
         };
+        let certain = self.weights.len() as u64 == self.samples
+            && self.weights.iter().all(|w| (w - 1.0).abs() <= ROUNDING);
         let interval = match withdrawn {
             Some(why) => Earned::none(why),
+            // Every draw is a breach for certain: as many successes of as many trials, and no more than that.
+            None if certain => {
+                Proportion { breaches: self.samples, faults: 0, samples: self.samples }
+                    .interval(confidence)
+                    .unwrap_or_else(|why| Earned::none(why.to_string()))
+            }
             None => {
                 let risk = (1.0 - confidence) / 2.0;
                 let (skewness, excess) = self.shape(probability);
@@ -112,6 +130,26 @@ impl WeightedBreaches {
             tail_index,
             interval,
         }
+    }
+
+    /// Why the probability of no breach is not known, where breaches are the rule and no draw weighs more than 1: what is
+    /// left of each draw must pass the same check, or draws that agree because none of them met the exception would
+    /// have an interval for it.
+    fn unseen_remainder(&self, probability: f64, checks: &WeightChecks) -> Option<String> {
+        if probability <= 0.5 || self.weights.iter().any(|&w| w > 1.0 + ROUNDING) {
+            return None;
+        }
+        let zeros = self.samples as f64 - self.weights.len() as f64;
+        let left = self.weights.iter().map(|&w| 1.0 - w).filter(|&left| left > ROUNDING);
+        let (sum, squares) =
+            left.fold((zeros, zeros), |(sum, squares), left| (sum + left, squares + left * left));
+        let effective = if squares > 0.0 { sum * sum / squares } else { f64::INFINITY };
+        (effective < checks.effective_breaches).then(|| {
+            format!(
+                "effective number of samples without a breach {effective:.0} is below {:.0}",
+                checks.effective_breaches
+            )
+        })
     }
 
     /// Skewness and excess kurtosis of the draws around their mean, the zeros included.
@@ -217,5 +255,19 @@ mod tests {
         assert!(breaches.summary(0.95, &WeightChecks::default()).interval.interval().is_none());
         let none = WeightedBreaches { samples: 10, weights: Vec::new() };
         assert!(none.summary(0.95, &WeightChecks::default()).interval.why_none().is_some());
+    }
+
+    #[test]
+    fn analytic_draws_that_agree_on_certainty_bound_it_as_so_many_trials() {
+        let of = |exceptions: usize| {
+            let mut weights = vec![1.0; 2000 - exceptions];
+            weights.resize(2000, 0.5);
+            WeightedBreaches { samples: 2000, weights }.summary(0.95, &WeightChecks::default())
+        };
+        // Clopper and Pearson: 0.025^(1/2000).
+        let certain = *of(0).interval.interval().unwrap();
+        assert!((certain.lower - exp(ln(0.025) / 2000.0)).abs() < 1e-12 && certain.upper == 1.0);
+        assert!(of(3).interval.why_none().is_some_and(|why| why.contains("without a breach 3 ")));
+        assert!(of(200).interval.interval().is_some());
     }
 }

@@ -268,9 +268,12 @@ fn statements(sweep: &SweepFinding) -> Vec<String> {
         );
         lines.push(match met {
             0 => format!("{required} is demonstrated at no setting."),
-            met => format!("{required} is demonstrated at {} settings.", count(met as u64)),
+            met => format!(
+                "{required} is demonstrated at {} settings, each by itself, by samples that the search has not seen.",
+                count(met as u64)
+            ),
         });
-        let smallest = sweep.cells.iter().filter_map(|cell| Some((cell, cell.any.as_ref()?)));
+        let smallest = sweep.cells.iter().filter_map(|cell| Some((cell, cell.confirmed.as_ref()?)));
         let smallest = smallest.min_by_key(|(cell, _)| {
             cell.counts.first().map_or(u64::MAX, |any| any.most_breaches())
         });
@@ -282,7 +285,8 @@ fn statements(sweep: &SweepFinding) -> Vec<String> {
                 .map(|(path, &v)| format!("`{}` = {}", path.path, value(v, path.quantity)))
                 .collect();
             lines.push(format!(
-                "The smallest P(any breach) is {} ({}), at {}.",
+                "The smallest P(any breach) found is {} ({}), at {}; estimated anew at points that the search has not \
+                 seen.",
                 any.value.map_or("unknown".to_owned(), probability),
                 probability_interval(&any.interval),
                 at.join(", ")
@@ -310,11 +314,14 @@ fn best_sentence(sweep: &SweepFinding, chosen: &PathFinding, best: &BestFinding)
         None => format!("no interval: {}", interval(estimate, chosen.quantity)),
     };
     let at = best.best.value?;
-    let there = best
-        .probability
-        .as_ref()
-        .and_then(|p| p.value)
-        .map_or(String::new(), |p| format!("; P there is {}", probability(p)));
+    let there = best.probability.as_ref().and_then(|p| p.value).map_or(String::new(), |p| {
+        let interval = best.probability.as_ref().map(|p| probability_interval(&p.interval));
+        format!(
+            "; P there is {} ({}), estimated anew at points that the search has not seen",
+            probability(p),
+            interval.unwrap_or_default()
+        )
+    });
     Some(format!(
         "P(any breach) is least at `{}` = {} ({}){there}.",
         chosen.path,

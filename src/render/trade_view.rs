@@ -163,7 +163,7 @@ fn design_value(finding: &DesignValueFinding) -> String {
     };
     format!(
         "With nothing tightened, `{}` is best at {best}: P(any breach) {} ({}) there, {} percentage points \
-         against {} now.",
+         against {} now, estimated anew at samples that the search has not seen.",
         finding.path,
         percent(&finding.probability),
         probability_interval(&finding.probability.interval),

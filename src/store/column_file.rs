@@ -1,5 +1,6 @@
 //! Columns of numbers out of a user's Parquet file, for empirical laws and joint samples.
 
+use super::checksums::verify_if_ours;
 use super::damage;
 use crate::study::{Parquet, SampleColumn};
 use polars::prelude::{DataType, ParquetReader, PolarsError, SerReader};
@@ -14,7 +15,7 @@ pub const PARQUET: Parquet = Parquet { column: read_number_column, table: read_n
 /// # Errors
 /// If the file cannot be read, has no such column, or the column holds no numbers or a null.
 pub fn read_number_column(path: &Path, column: &str) -> Result<Vec<f64>, String> {
-    let file = File::open(path).map_err(|reason| reason.to_string())?;
+    let file = open(path)?;
     let values = damage::read(|| {
         let frame =
             ParquetReader::new(file).with_columns(Some(vec![column.to_owned()])).finish()?;
@@ -56,7 +57,7 @@ type AnyColumn = (String, Option<Vec<Option<f64>>>);
 
 /// Every column of a Parquet file.
 fn read_columns(path: &Path) -> Result<Vec<AnyColumn>, String> {
-    let file = File::open(path).map_err(|reason| reason.to_string())?;
+    let file = open(path)?;
     damage::read(|| {
         let frame = ParquetReader::new(file).finish()?;
         let mut columns = Vec::new();
@@ -70,6 +71,13 @@ fn read_columns(path: &Path) -> Result<Vec<AnyColumn>, String> {
         }
         Ok::<_, PolarsError>(columns)
     })
+}
+
+/// Opens a file; one of our own tables is verified.
+fn open(path: &Path) -> Result<File, String> {
+    let mut file = File::open(path).map_err(|reason| reason.to_string())?;
+    verify_if_ours(&mut file)?;
+    Ok(file)
 }
 
 fn without_nulls(column: &str, values: Vec<Option<f64>>) -> Result<Vec<f64>, String> {

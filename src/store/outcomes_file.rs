@@ -1,5 +1,6 @@
 //! `outcomes.parquet`: one row a sample, with the names of its parents in the footer.
 
+use super::checksums::{Checksums, DIGEST_KEY, GROUPS_KEY};
 use super::damage;
 use super::parquet::{TableWriter, frame};
 use crate::descent::{Fault, OutcomeQuantity};
@@ -8,7 +9,7 @@ use crate::outcomes::OutcomeTable;
 use crate::study::Study;
 use polars::prelude::{Column, DataFrame, Float64Chunked, IntoColumn, ParquetReader, SerReader};
 use std::collections::BTreeMap;
-use std::fs::File;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 /// Column of the sample's index.
@@ -106,7 +107,8 @@ fn number_column(name: &str, values: Vec<f64>, faults: Option<&[Option<Fault>]>)
     Column::new(name.into(), values)
 }
 
-/// Writes `outcomes.parquet`, row group by row group.
+/// Writes `outcomes.parquet`, row group by row group. What was written outlives the process: see
+/// [`super::UnfinishedTable`].
 pub struct OutcomesWriter {
     layout: Layout,
     writer: TableWriter,
@@ -120,7 +122,7 @@ impl OutcomesWriter {
     pub fn create(path: &Path, study: &Study, parentage: &Parentage) -> Result<Self> {
         let layout = Layout::new(study);
         let schema = layout.frame(&[]).map_err(|reason| unusable(path, reason))?;
-        let writer = TableWriter::create(path, schema.schema(), parentage.entries())?;
+        let writer = TableWriter::create_durable(path, schema.schema(), parentage.entries())?;
         Ok(OutcomesWriter { layout, writer })
     }
 
@@ -148,6 +150,7 @@ pub struct OutcomesReader {
     path: PathBuf,
     rows: u64,
     parentage: Parentage,
+    checksums: Checksums,
 }
 
 fn unusable(path: &Path, reason: impl std::fmt::Display) -> Error {
@@ -163,9 +166,17 @@ impl OutcomesReader {
     /// Opens a file and reads its footer.
     ///
     /// # Errors
-    /// If it is not there, not Parquet, or not written by this program.
+    /// If it is not there, not Parquet, damaged, or not written by this program.
     pub fn open(path: &Path) -> Result<Self> {
-        let file = File::open(path).map_err(|reason| unusable(path, reason))?;
+        // A pipe or a device could keep a reader waiting for ever.
+        if fs::metadata(path).is_ok_and(|there| !there.is_file()) {
+            return Err(unusable(path, "it is not a regular file"));
+        }
+        let mut file = File::open(path).map_err(|reason| unusable(path, reason))?;
+        let checksums = Checksums::of(&mut file).map_err(|reason| unusable(path, reason))?;
+        let none = "it is not a table of reeldown's with checksums: it is another file, is cut off, or was written \
+                    by an earlier version";
+        let checksums = checksums.ok_or_else(|| unusable(path, none))?;
         let metadata = damage::read(|| ParquetReader::new(file).get_metadata().cloned())
             .map_err(|reason| unusable(path, reason))?;
         let rows = metadata.num_rows as u64;
@@ -173,14 +184,16 @@ impl OutcomesReader {
         let parentage: BTreeMap<String, String> = entries
             .iter()
             .filter_map(|entry| {
-                let key = entry.key.strip_prefix(PREFIX)?;
+                let own = entry.key != GROUPS_KEY && entry.key != DIGEST_KEY;
+                let key = entry.key.strip_prefix(PREFIX).filter(|_| own)?;
                 Some((key.to_owned(), entry.value.clone()?))
             })
             .collect();
         if parentage.is_empty() {
             return Err(unusable(path, "its footer has no entry of reeldown's"));
         }
-        Ok(OutcomesReader { path: path.to_owned(), rows, parentage: Parentage(parentage) })
+        let parentage = Parentage(parentage);
+        Ok(OutcomesReader { path: path.to_owned(), rows, parentage, checksums })
     }
 
     /// Number of samples in the file.
@@ -193,13 +206,15 @@ impl OutcomesReader {
         &self.parentage
     }
 
-    /// Reads samples `first` … `first + rows − 1` of a file of this study.
+    /// Reads samples `first` … `first + rows − 1` of a file of this study, after verifying the row groups that
+    /// hold them.
     ///
     /// # Errors
-    /// If the file has other columns than the study, or cannot be read.
+    /// If a row group does not match its checksum, the file has other columns than the study, or it cannot be read.
     pub fn read(&self, study: &Study, first: u64, rows: usize) -> Result<OutcomeTable> {
         let fail = |reason: String| unusable(&self.path, reason);
-        let file = File::open(&self.path).map_err(|reason| unusable(&self.path, reason))?;
+        let mut file = File::open(&self.path).map_err(|reason| unusable(&self.path, reason))?;
+        self.checksums.verify(&mut file, first..first + rows as u64).map_err(fail)?;
         let slice = Some((first as usize, rows));
         let frame =
             damage::read(|| ParquetReader::new(file).with_slice(slice).finish()).map_err(fail)?;

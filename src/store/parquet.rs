@@ -1,12 +1,19 @@
 //! Parquet through polars: tables with metadata in the footer, one row group a batch.
 
 use super::atomic::{AtomicFile, cannot_write};
+use super::checksums::MAGIC;
+use super::footer::Footer;
+use super::journal::Journal;
 use crate::error::Result;
-use polars::prelude::{Column, CompatLevel, DataFrame, PolarsResult, Schema, SchemaExt};
+use polars::prelude::{
+    ArrowSchema, Column, CompatLevel, DataFrame, PolarsResult, Schema, SchemaExt,
+};
 use polars_parquet::write::{
     CompressionOptions, Encoding, FileWriter, KeyValue, StatisticsOptions, Version, WriteOptions,
     row_group_iter, schema_to_metadata_key,
 };
+use polars_parquet_format::FileMetaData;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// One column of a small table.
@@ -46,10 +53,13 @@ const OPTIONS: WriteOptions = WriteOptions {
     data_page_size: None,
 };
 
-/// A Parquet file under way.
+/// A Parquet file under way. polars encodes the row groups, one by one in memory; the footer, with their checksums,
+/// is our own.
 pub(super) struct TableWriter {
-    inner: FileWriter<AtomicFile>,
-    metadata: Vec<(String, String)>,
+    file: AtomicFile,
+    schema: ArrowSchema,
+    footer: Footer,
+    journal: Option<Journal>,
     path: PathBuf,
 }
 
@@ -60,33 +70,82 @@ impl TableWriter {
         schema: &Schema,
         metadata: Vec<(String, String)>,
     ) -> Result<Self> {
+        Self::start(path, schema, metadata, None)
+    }
+
+    /// Starts a table whose finished row groups outlive the death of this process: see [`Journal`].
+    pub(super) fn create_durable(
+        path: &Path,
+        schema: &Schema,
+        metadata: Vec<(String, String)>,
+    ) -> Result<Self> {
+        Self::start(path, schema, metadata, Some(Journal::new(path)?))
+    }
+
+    fn start(
+        path: &Path,
+        schema: &Schema,
+        metadata: Vec<(String, String)>,
+        journal: Option<Journal>,
+    ) -> Result<Self> {
+        let mut file = match &journal {
+            Some(journal) => AtomicFile::create_as(path, journal.part())?,
+            None => AtomicFile::create(path)?,
+        };
         let schema = schema.to_arrow(CompatLevel::newest());
-        let inner = FileWriter::try_new(AtomicFile::create(path)?, schema, OPTIONS)
-            .map_err(|reason| cannot_write(path, reason))?;
-        Ok(TableWriter { inner, metadata, path: path.to_owned() })
+        let empty = encode(&schema, |_| Ok(())).map_err(|reason| cannot_write(path, reason))?;
+        let own = metadata.into_iter().map(|(key, value)| KeyValue { key, value: Some(value) });
+        let entries = std::iter::once(schema_to_metadata_key(&schema)).chain(own).collect();
+        file.write_all(&MAGIC).map_err(|reason| cannot_write(path, reason))?;
+        let footer = Footer::new(empty.1, entries);
+        Ok(TableWriter { file, schema, footer, journal, path: path.to_owned() })
     }
 
     /// Writes a row group.
     pub(super) fn write(&mut self, frame: &DataFrame) -> Result<()> {
         for batch in frame.iter_chunks(CompatLevel::newest(), false) {
-            let fields = self.inner.parquet_schema().fields().to_vec();
-            let plain = vec![vec![Encoding::Plain]; fields.len()];
-            let rows = batch.len() as u64;
-            let group = row_group_iter(batch, plain.into(), fields, OPTIONS);
-            self.inner.write(rows, group).map_err(|reason| cannot_write(&self.path, reason))?;
+            let fail = |reason: &dyn std::fmt::Display| cannot_write(&self.path, reason);
+            let encoded = encode(&self.schema, |writer| {
+                let fields = writer.parquet_schema().fields().to_vec();
+                let plain = vec![vec![Encoding::Plain]; fields.len()];
+                let rows = batch.len() as u64;
+                writer.write(rows, row_group_iter(batch, plain.into(), fields, OPTIONS))
+            });
+            let (bytes, metadata) = encoded.map_err(|reason| fail(&reason))?;
+            for group in metadata.row_groups {
+                // After the pages come indices of them, which nobody needs where a column has one page.
+                let pages = group.columns.iter().filter_map(|column| column.offset_index_offset);
+                let end = pages.min().map_or(bytes.len(), |end| end as usize);
+                let bytes = bytes.get(MAGIC.len()..end).unwrap_or_default();
+                self.file.write_all(bytes).map_err(|reason| fail(&reason))?;
+                self.footer.push(group, bytes);
+                if let Some(journal) = &mut self.journal {
+                    journal.note(&mut self.file, &self.footer)?;
+                }
+            }
         }
         Ok(())
     }
 
     /// Writes the footer and gives the file its name.
     pub(super) fn finish(mut self) -> Result<()> {
-        let own =
-            self.metadata.into_iter().map(|(key, value)| KeyValue { key, value: Some(value) });
-        let entries = std::iter::once(schema_to_metadata_key(self.inner.schema())).chain(own);
-        let entries = entries.collect();
-        self.inner.end(Some(entries)).map_err(|reason| cannot_write(&self.path, reason))?;
-        self.inner.into_inner().commit()
+        let fail = |reason: &dyn std::fmt::Display| cannot_write(&self.path, reason);
+        let footer = self.footer.bytes().map_err(|reason| fail(&reason))?;
+        self.file.write_all(&footer).map_err(|reason| fail(&reason))?;
+        self.file.commit()?;
+        self.journal.map_or(Ok(()), Journal::close)
     }
+}
+
+/// A Parquet file in memory, with the row groups that `write` puts in, and what its footer says.
+fn encode(
+    schema: &ArrowSchema,
+    write: impl FnOnce(&mut FileWriter<Vec<u8>>) -> PolarsResult<()>,
+) -> PolarsResult<(Vec<u8>, FileMetaData)> {
+    let mut writer = FileWriter::try_new(Vec::new(), schema.clone(), OPTIONS)?;
+    write(&mut writer)?;
+    writer.end(Some(Vec::new()))?;
+    Ok(writer.into_inner_and_metadata())
 }
 
 /// Columns of one length as a frame.

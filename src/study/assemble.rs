@@ -2,9 +2,11 @@
 
 use super::card::{self, Card};
 use super::document::{self, Node, Value};
+use super::files::{Files, NamedText};
 use super::overrides::{Destination, Override, in_place_of, put};
 use super::place::Text;
-use super::together::{self, SampleFile, Together};
+use super::together::{self, Together};
+use super::values::parameter_path;
 use super::{
     DrawnTogether, Input, Stated, Study, correlation, epistemic, inputs, pairs, read, sections,
     tighten,
@@ -16,44 +18,6 @@ use crate::physics::parameters::Parameter;
 use crate::uncertainty::JointSample;
 use crate::units::number;
 use std::sync::Arc;
-
-/// A text with the name by which diagnostics call it.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct NamedText {
-    /// The name: a path as a person would write it.
-    pub origin: String,
-    /// The text.
-    pub text: String,
-}
-
-/// Where cards and the columns of empirical laws come from. A failure is its reason, in a few words.
-pub trait Files {
-    /// The card called `name`, which was named by the study file or, if `by_option`, by `--set card=…`.
-    ///
-    /// # Errors
-    /// Why the card cannot be read.
-    fn card(&mut self, name: &str, by_option: bool) -> std::result::Result<NamedText, String>;
-
-    /// The numbers, in SI, of a column of the file `name` that the card `card` names.
-    ///
-    /// # Errors
-    /// Why the column cannot be read.
-    fn column(
-        &mut self,
-        card: &str,
-        name: &str,
-        column: &str,
-    ) -> std::result::Result<Vec<f64>, String>;
-
-    /// The whole of the file `name` that the card `card` names, column by column.
-    ///
-    /// # Errors
-    /// Why the file cannot be read.
-    fn sample(&mut self, card: &str, name: &str) -> std::result::Result<SampleFile, String> {
-        let _ = (card, name);
-        Err("no files of joint samples are read here".to_owned())
-    }
-}
 
 /// Makes the study that a text, its cards and some overrides describe.
 ///
@@ -118,7 +82,8 @@ fn assemble_with(
     for card in &card_texts {
         let text = Arc::new(Text { origin: card.origin.clone(), text: card.text.clone() });
         let mut card = card::read_card(&document::parse(&text)?)?;
-        card.together = together::read(&card, files)?;
+        let stated = |target| card.statements.iter().any(|statement| statement.target == target);
+        card.together = together::read(&card.joints, &stated, files)?;
         cards.push(card);
     }
     let calibrated = cards.iter().skip(1).position(|card| card.calibrated_from.is_some());
@@ -130,7 +95,7 @@ fn assemble_with(
         .and_then(|cards| assemble_with(study, overrides, files, Some(cards)).ok().map(Box::new));
     let mut card = card::merge(cards);
     for (statement, path, key) in card_overrides {
-        if let Some(target) = card::parameter_path(&path) {
+        if let Some(target) = parameter_path(&path) {
             card::put(&mut card, target, &statement.path, &key, &statement.value);
         }
     }

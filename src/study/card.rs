@@ -3,11 +3,10 @@
 use super::document::{Key, Node, Table, Value};
 use super::read;
 use super::together::Together;
-use super::vocabulary::CARD;
+use super::values::{parameter_path, unknown_input};
 use crate::error::Result;
 use crate::physics::design::Target;
-use crate::physics::parameters::{PARAMETERS, Parameter};
-use crate::units::spelling::nearest;
+use crate::physics::parameters::PARAMETERS;
 
 /// What a card says of one input, before it is understood.
 #[derive(Debug, Clone)]
@@ -28,20 +27,6 @@ pub(super) struct Card {
     pub joints: Vec<Node>,
     /// What the `[[joint]]` statements draw, once their files are read.
     pub together: Vec<Together>,
-}
-
-/// The target of a dotted path: `brake.gap[3]` is the gap of surface 3, counted from 1.
-pub(super) fn parameter_path(path: &str) -> Option<Target> {
-    if let Some(parameter) = Parameter::from_path(path) {
-        return Some(Target::whole(parameter));
-    }
-    let number = path.strip_prefix(Parameter::BrakeGap.info().path)?;
-    let number = number.strip_prefix('[')?.strip_suffix(']')?.trim();
-    if !number.bytes().all(|byte| byte.is_ascii_digit()) {
-        return None;
-    }
-    let surface: usize = number.parse().ok()?;
-    Some(Target::gap(surface.checked_sub(1)?))
 }
 
 /// Sorts the entries of a card into inputs and correlations.
@@ -101,19 +86,6 @@ fn collect(path: String, key: &Key, node: &Node, into: &mut Vec<Statement>) -> R
         }
         _ => Err(unknown_input(&path, key)),
     }
-}
-
-/// The diagnostic of an input that nothing knows.
-pub(super) fn unknown_input(path: &str, key: &Key) -> crate::error::Error {
-    let paths = PARAMETERS.iter().map(|info| info.path);
-    let groups = paths.clone().filter_map(|path| path.split_once('.')).map(|(group, _)| group);
-    let others = CARD.iter().map(|info| info.name);
-    let help = nearest(path, paths.chain(others).chain(groups));
-    key.place.error_with(
-        format!("unknown input `{path}`"),
-        "expected a dotted path, such as [brake.gap] or [initial.temperature]",
-        help.map(|near| format!("did you mean `{near}`?")),
-    )
 }
 
 /// Merges cards: of two statements about one input, alone or with others, the later wins.

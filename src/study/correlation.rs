@@ -1,16 +1,18 @@
 //! Statements of dependence, and the joint distribution that they make.
 
-use super::card::parameter_path;
 use super::document::{Node, Value};
 use super::place::Place;
 use super::read::{self, Section};
 use super::together::already_dependent;
+use super::values::parameter_path;
 use super::vocabulary::CORRELATION;
 use super::{Correlation, Input};
 use crate::error::{Error, Result};
 use crate::physics::design::Target;
 use crate::physics::parameters::{PARAMETERS, Parameter};
-use crate::uncertainty::{Copula, Joint, JointSample, Marginal, Measure, Refusal, Statement};
+use crate::uncertainty::{
+    Copula, Joint, JointSample, Marginal, Measure, NEAREST_TO_ONE, Refusal, Statement,
+};
 use crate::units::Quantity;
 use crate::units::number;
 use crate::units::spelling::nearest;
@@ -200,6 +202,13 @@ fn blame(inputs: &[Input], placed: &[Placed], refusal: Refusal) -> Error {
     let Some(culprit) = placed.get(refusal.statement) else { return refusal.into() };
     let (a, b) = culprit.correlation.between;
     let path = |k: usize| inputs.get(k).map_or(String::new(), |input| input.target.path());
+    if refusal.alone {
+        // What a single statement can say wrong was refused where it was read, but for this.
+        let problem = format!("the correlation makes {} and {} one input", path(a), path(b));
+        let expected =
+            format!("expected at most {NEAREST_TO_ONE} in size, or the two as a single input");
+        return culprit.place.error(problem, expected);
+    }
     let is_same = |other: &&Placed| {
         Arc::ptr_eq(&other.place.text, &culprit.place.text)
             && other.place.span == culprit.place.span

@@ -1,10 +1,9 @@
 //! Observed values: listed in a card, or one column of a CSV text.
 
 use super::document::{Node, Value};
-use super::law::check_possible;
+use super::files::SampleColumn;
 use super::read;
-use super::sections::possible_range;
-use super::together::SampleColumn;
+use super::values::{check_possible, possible_range};
 use crate::error::{Error, Result};
 use crate::physics::parameters::ParameterInfo;
 

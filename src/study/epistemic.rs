@@ -98,3 +98,8 @@ pub(super) fn shared_readings(inputs: &[Input]) -> Option<String> {
          not known gives them one mean and one deviation"
     ))
 }
+
+/// Whether an input varies or is unknown.
+pub(super) fn nature(node: &Node) -> Result<Nature> {
+    read::choice(node, "nature", &Nature::ALL.map(Nature::name), Nature::from_name)
+}

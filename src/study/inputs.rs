@@ -2,12 +2,12 @@
 
 use super::card::{Card, Statement};
 use super::digest::of_numbers;
-use super::document::Node;
 use super::empirical::ColumnReader;
+use super::epistemic::nature;
 use super::law::understand;
 use super::read;
-use super::sections::check_surface;
 use super::together::Together;
+use super::values::check_surface;
 use super::{Input, Known, Nature, TighteningCost, tighten};
 use crate::error::Result;
 use crate::physics::design::{Design, Target};
@@ -54,7 +54,7 @@ pub(super) fn inputs(
 
 /// One input of those that are drawn together.
 fn member(together: &Together, target: Target, values: &[f64]) -> Result<Input> {
-    let law = Law::empirical(values.to_vec(), None).map_err(|_| {
+    let law = Law::discrete(values.to_vec(), None).map_err(|_| {
         let problem = format!("{} has one and the same value in every row", target.path());
         let expected = "expected values that differ: a constant belongs in [design]";
         together.key.place.error(problem, expected)
@@ -71,11 +71,6 @@ fn member(together: &Together, target: Target, values: &[f64]) -> Result<Input> 
         law_text: together.law_text(),
         law_canonical: format!("together values={}", of_numbers(values)),
     })
-}
-
-/// Whether an input varies or is unknown.
-pub(super) fn nature(node: &Node) -> Result<Nature> {
-    read::choice(node, "nature", &Nature::ALL.map(Nature::name), Nature::from_name)
 }
 
 /// One statement as an input, and whether it stands for one on each surface.

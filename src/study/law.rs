@@ -7,7 +7,7 @@ use super::document::{Key, Node, Table, Value};
 use super::empirical::{ColumnReader, listed, observed};
 use super::laws::{Kind, LAWS, LawInfo, keys_of, kind_of, law_keys};
 use super::read;
-use super::sections::{possible_range, written};
+use super::values::{check_possible, written};
 use crate::error::{Error, Result};
 use crate::physics::design::Target;
 use crate::physics::parameters::{Parameter, ParameterInfo};
@@ -188,20 +188,6 @@ fn choose_form(
 fn with_commas(names: &[&str]) -> String {
     let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     quoted.join(", ")
-}
-
-/// Checks that a value lies in the closure of what the parameter admits.
-pub(super) fn check_possible(
-    parameter: &ParameterInfo,
-    key: &str,
-    value: f64,
-    node: &Node,
-) -> Result<()> {
-    if (parameter.lower..=parameter.upper).contains(&value) {
-        return Ok(());
-    }
-    let problem = format!("{key} = {} is impossible for {}", written(node), parameter.path);
-    Err(node.place.error(problem, possible_range(parameter.parameter)))
 }
 
 /// An end of a truncation, if there is one, with where it was written.

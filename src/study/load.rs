@@ -1,9 +1,9 @@
 //! Reading studies: the only place where the study floor touches a file.
 
-use super::assemble::{Files, NamedText, assemble};
+use super::assemble::assemble;
 use super::digest::of_bytes;
 use super::empirical;
-use super::together::{SampleColumn, SampleFile};
+use super::files::{Files, NamedText, SampleColumn, SampleFile};
 use super::{Override, Study};
 use crate::error::{Error, Result};
 use std::path::{Path, PathBuf};

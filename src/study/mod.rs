@@ -11,6 +11,7 @@ mod digest;
 mod document;
 mod empirical;
 mod epistemic;
+mod files;
 mod inputs;
 mod law;
 mod laws;
@@ -27,6 +28,7 @@ mod sections;
 mod tighten;
 mod together;
 mod until;
+mod values;
 mod vocabulary;
 
 use crate::descent::{Model, Outcome, OutcomeQuantity};
@@ -34,16 +36,16 @@ use crate::physics::design::{Design, Target};
 use crate::sampling;
 use crate::uncertainty::{Joint, Marginal, Measure, Readings};
 
-pub use assemble::{Files, NamedText, assemble};
+pub use assemble::assemble;
 pub use digest::sha256;
 pub use epistemic::{EpistemicPlan, Nature};
+pub use files::{Files, NamedText, SampleColumn, SampleFile};
 pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, Parquet, read_column, read_sample};
 pub use measured_run::MeasuredRun;
 pub use over::{MOST_CELLS, Over, design_path, option_error};
 pub use overrides::Override;
 pub use resolved::{ResolvedCorrelation, ResolvedParameter, UncertainLaw};
 pub use tighten::{DesignRange, Grade, TightenPlan, TighteningCost, TradePlan};
-pub use together::{SampleColumn, SampleFile};
 pub use until::StoppingPlan;
 
 /// A study, resolved: every value in SI, every name known.

@@ -1,8 +1,8 @@
 //! Ranges on the command line: `--over PATH=FROM..TO:N`, a design path and the values to be tried.
 
 use super::Study;
-use super::card::parameter_path;
 use super::place::{Place, Text};
+use super::values::parameter_path;
 use crate::error::{Error, Result};
 use crate::physics::design::Target;
 use crate::physics::parameters::{PARAMETERS, Parameter};

@@ -1,10 +1,10 @@
 //! Statements on the command line that change a study: `--set PATH=VALUE` and its like.
 
-use super::card::parameter_path;
 use super::document::{Key, Node, Table, Value, parse_value};
 use super::laws::law_keys;
 use super::place::{Place, Text};
 use super::read;
+use super::values::parameter_path;
 use super::vocabulary::{INPUT, KeyInfo, LIMIT, STUDY, UNTIL};
 use crate::descent::OutcomeQuantity;
 use crate::error::Result;

@@ -1,9 +1,9 @@
 //! The sections of a study file, one function each.
 
-use super::card::parameter_path;
 use super::document::{Key, Node, Value};
 use super::read::{self, Section, unknown_key};
 use super::until;
+use super::values::{check_surface, parameter_path, possible_range, written};
 use super::vocabulary as keys;
 use super::{
     Limit, LimitKind, Numerics, ReliabilityPlan, Requirement, SamplingPlan, SensitivityPlan, Stated,
@@ -129,14 +129,6 @@ fn statement(entry: &DesignEntry, value: f64) -> Stated {
     }
 }
 
-/// A value as written, without its quotes.
-pub(super) fn written(node: &Node) -> String {
-    match &node.value {
-        Value::String(text) => text.trim().to_owned(),
-        _ => node.place.written().trim().to_owned(),
-    }
-}
-
 fn possible(entry: &DesignEntry) -> Result<f64> {
     let info = entry.target.parameter.info();
     let value = read::quantity(&entry.node, info.quantity)?;
@@ -145,33 +137,6 @@ fn possible(entry: &DesignEntry) -> Result<f64> {
     }
     let problem = format!("{} = {} is impossible", entry.target.path(), written(&entry.node));
     Err(entry.node.place.error(problem, possible_range(entry.target.parameter)))
-}
-
-/// "expected a value between 1 and 1000", in SI.
-pub(super) fn possible_range(parameter: Parameter) -> String {
-    let info = parameter.info();
-    let unit = info.quantity.si_unit();
-    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-    let (lower, upper) = (info.lower, info.upper);
-    match (upper.is_finite(), info.open) {
-        (false, true) => format!("expected more than {lower}{unit}"),
-        (false, false) => format!("expected {lower}{unit} or more"),
-        (true, true) => format!("expected a value strictly between {lower} and {upper}{unit}"),
-        (true, false) => format!("expected a value from {lower} to {upper}{unit}"),
-    }
-}
-
-/// Checks that a gap's surface exists.
-pub(super) fn check_surface(target: Target, design: &Design<f64>, key: &Key) -> Result<()> {
-    match target.surface {
-        Some(surface) if surface >= design.surfaces() => {
-            let problem = format!("there is no working surface {}", surface + 1);
-            let last = design.surfaces();
-            let expected = format!("expected brake.gap[1] to brake.gap[{last}]: two a rotor");
-            Err(key.place.error(problem, expected))
-        }
-        _ => Ok(()),
-    }
 }
 
 /// Pairs of which the first must be the smaller.

@@ -3,7 +3,8 @@
 
 use super::document::{Node, Value};
 use super::read::{self, Section};
-use super::sections::{check_surface, design_entries, possible_range, written};
+use super::sections::design_entries;
+use super::values::{check_surface, possible_range, written};
 use super::vocabulary as keys;
 use crate::error::Result;
 use crate::physics::design::{Design, Target};

@@ -1,11 +1,10 @@
 //! `[[joint]]`: inputs that are drawn together, row by row, from a file of joint samples.
 
-use super::assemble::Files;
-use super::card::{Card, parameter_path, unknown_input};
 use super::document::{Key, Node, Value};
-use super::inputs::nature;
+use super::epistemic::nature;
+use super::files::{Files, SampleColumn, SampleFile};
 use super::read::{self, Section};
-use super::sections::possible_range;
+use super::values::{parameter_path, possible_range, unknown_input};
 use super::vocabulary::JOINT;
 use super::{Known, Nature, TighteningCost, tighten};
 use crate::error::{Error, Result};
@@ -15,18 +14,6 @@ use crate::units;
 use crate::units::spelling::nearest;
 
 const COLUMNS_EXAMPLE: &str = "{ \"fluid.shear_factor\" = \"shear_factor\" }";
-
-/// A column of numbers, or why it holds none, in a few words.
-pub type SampleColumn = (String, std::result::Result<Vec<f64>, String>);
-
-/// A file of joint samples, read.
-#[derive(Debug, Clone)]
-pub struct SampleFile {
-    /// SHA-256 of the file, in hexadecimal.
-    pub sha256: String,
-    /// Its columns in their order, by the names in its header.
-    pub columns: Vec<SampleColumn>,
-}
 
 /// Inputs that a card draws together.
 #[derive(Debug, Clone)]
@@ -64,18 +51,22 @@ impl Together {
     }
 }
 
-/// Reads the `[[joint]]` statements of a card.
+/// Reads the `[[joint]]` statements of a card, which states the laws of other inputs.
 ///
 /// # Errors
 /// A diagnostic: an unknown key or input, a file that cannot be read or is another one, a column that is
 /// not there, an impossible value, an input that the card states twice.
-pub(super) fn read(card: &Card, files: &mut dyn Files) -> Result<Vec<Together>> {
+pub(super) fn read(
+    joints: &[Node],
+    has_law: &dyn Fn(Target) -> bool,
+    files: &mut dyn Files,
+) -> Result<Vec<Together>> {
     let mut found: Vec<Together> = Vec::new();
-    for statement in &card.joints {
+    for statement in joints {
         let together = read_one(statement, files)?;
         for (target, _) in &together.members {
             let drawn = found.iter().flat_map(|other| &other.members).any(|(t, _)| t == target);
-            if drawn || card.statements.iter().any(|other| other.target == *target) {
+            if drawn || has_law(*target) {
                 let problem = format!("{} is given twice in one card", target.path());
                 let expected = "expected each input once: in a [[joint]] or with a law of its own \
                                 (a later card may replace either)";

@@ -74,6 +74,8 @@ pub struct Refusal {
     pub pair: (usize, usize),
     /// The values, in the statement's own measure, that all the other statements would allow.
     pub admissible: Option<(f64, f64)>,
+    /// Whether the statement is refused for itself, not beside the others.
+    pub alone: bool,
     /// What is wrong, in one sentence, the inputs named by their numbers from 1.
     pub reason: String,
 }
@@ -94,6 +96,8 @@ impl From<Refusal> for Error {
 
 /// Pivots of the Cholesky factor below this count as zero: the inputs are then functions of each other.
 const LEAST_PIVOT: f64 = 1e-10;
+/// The normal correlation that leaves the least pivot.
+pub const NEAREST_TO_ONE: f64 = 0.999_999_999_9;
 
 /// The Gaussian copula of a number of inputs.
 #[derive(Debug, Clone, PartialEq)]
@@ -119,6 +123,7 @@ impl Copula {
                 statement: k,
                 pair: (first, second),
                 admissible: None,
+                alone: true,
                 reason,
             };
             if first >= dimension || second >= dimension {
@@ -143,6 +148,17 @@ impl Copula {
                 (other.first, other.second) == (first, second)
                     || (other.first, other.second) == (second, first)
             };
+            // Alone the pair leaves 1 − ρ² of the second's variance: below the least pivot they are one input.
+            let rho = measure.normal_correlation();
+            if (1.0 - rho) * (1.0 + rho) <= LEAST_PIVOT {
+                return Err(refuse(format!(
+                    "the {} correlation {value} of inputs {} and {} makes them one input to the tenth digit: \
+                     expected at most {NEAREST_TO_ONE} in size, or a single input",
+                    measure.name(),
+                    first + 1,
+                    second + 1
+                )));
+            }
             if statements.iter().take(k).any(stated) {
                 return Err(refuse(format!(
                     "the correlation of inputs {} and {} is stated twice",
@@ -150,7 +166,6 @@ impl Copula {
                     second + 1
                 )));
             }
-            let rho = measure.normal_correlation();
             correlation[(first, second)] = rho;
             correlation[(second, first)] = rho;
         }
@@ -254,6 +269,7 @@ fn contradiction(matrix: &DMatrix<f64>, statements: &[Statement]) -> Refusal {
             statement: k,
             pair: (statement.first, statement.second),
             admissible: Some((low, high)),
+            alone: false,
             reason: format!(
                 "the {} correlation {} of inputs {} and {} contradicts the other statements (the matrix is \
                  not positive definite): they leave it only the values between {low:.4} and {high:.4}",
@@ -279,6 +295,7 @@ fn contradiction(matrix: &DMatrix<f64>, statements: &[Statement]) -> Refusal {
         statement: k,
         pair,
         admissible: None,
+        alone: false,
         reason: format!(
             "the correlations up to that of inputs {} and {} contradict each other (the matrix is not positive \
              definite), and changing one of them alone does not mend it",

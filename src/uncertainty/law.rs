@@ -100,7 +100,7 @@ pub enum Law {
         /// Whether it is the logarithm that follows the law.
         logarithmic: bool,
     },
-    /// The law of a set of observations.
+    /// The law of a set of observations, or of values with probabilities.
     Empirical(Empirical),
 }
 
@@ -119,6 +119,7 @@ impl Law {
             Law::Exponential { .. } => "exponential",
             Law::Student { logarithmic: false, .. } => "Student's t",
             Law::Student { logarithmic: true, .. } => "Student's t of the logarithm",
+            Law::Empirical(empirical) if empirical.is_discrete() => "discrete",
             Law::Empirical(_) => "empirical",
         }
     }
@@ -219,6 +220,9 @@ impl Law {
     pub(super) fn tails(&self, x: f64) -> (f64, f64) {
         if x.is_nan() {
             return (x, x);
+        }
+        if let Law::Empirical(empirical) = self {
+            return empirical.tails(x);
         }
         let (least, greatest) = self.support();
         if x <= least {

@@ -1,12 +1,12 @@
 //! One uncertain quantity: a law with stated truncation.
 
-use super::Law;
 use super::moments::expectation;
 use super::transform::{
     NormalTransform, Scale, tail_of_uniform, truncated_normal_of, uniform_column,
     uniform_column_from_normal,
 };
-use super::truncation::{Truncation, interval_probability};
+use super::truncation::{Truncation, interval_probability, ordered};
+use super::{Empirical, Law};
 use crate::error::Result;
 use crate::numerics::elementary::ln;
 use crate::numerics::special::normal;
@@ -18,6 +18,8 @@ pub struct Marginal {
     lower: Option<f64>,
     upper: Option<f64>,
     cut: Option<Truncation>,
+    /// What truncation leaves of a law of listed values, which has atoms, and the probability that it had.
+    kept: Option<(Empirical, f64)>,
 }
 
 impl Marginal {
@@ -26,16 +28,23 @@ impl Marginal {
     /// # Errors
     /// If the limits are reversed, not numbers, or leave no probability between them.
     pub fn new(law: Law, lower: Option<f64>, upper: Option<f64>) -> Result<Self> {
-        let cut = match (lower, upper) {
-            (None, None) => None,
-            _ => Some(Truncation::new(&law, lower, upper)?),
-        };
-        Ok(Marginal { law, lower, upper, cut })
+        let mut marginal = Marginal { lower, upper, ..Marginal::untruncated(law) };
+        if lower.is_none() && upper.is_none() {
+            return Ok(marginal);
+        }
+        match &marginal.law {
+            Law::Empirical(empirical) => {
+                let (from, to) = ordered(lower, upper)?;
+                marginal.kept = Some(empirical.restricted(from, to)?);
+            }
+            law => marginal.cut = Some(Truncation::new(law, lower, upper)?),
+        }
+        Ok(marginal)
     }
 
     /// `law` as it is.
     pub fn untruncated(law: Law) -> Self {
-        Marginal { law, lower: None, upper: None, cut: None }
+        Marginal { law, lower: None, upper: None, cut: None, kept: None }
     }
 
     /// The law before truncation.
@@ -55,11 +64,36 @@ impl Marginal {
 
     /// The probability that the law had between the limits; 1 without truncation.
     pub fn mass(&self) -> f64 {
-        self.cut.map_or(1.0, |cut| cut.mass)
+        match &self.kept {
+            Some((_, mass)) => *mass,
+            None => self.cut.map_or(1.0, |cut| cut.mass),
+        }
+    }
+
+    /// The law of listed values, truncated, if it is one.
+    fn listed(&self) -> Option<&Empirical> {
+        match (&self.kept, &self.law) {
+            (Some((kept, _)), _) => Some(kept),
+            (None, Law::Empirical(whole)) => Some(whole),
+            _ => None,
+        }
+    }
+
+    /// Whether the quantile function jumps: then an outcome has no slope in the input's coordinate.
+    pub fn has_jumps(&self) -> bool {
+        self.listed().is_some_and(Empirical::has_jumps)
+    }
+
+    /// The listed law, for integrals over its steps.
+    pub(super) fn stepped(&self) -> Option<&Empirical> {
+        self.listed()
     }
 
     /// The smallest interval that holds every value, ends possibly infinite.
     pub fn support(&self) -> (f64, f64) {
+        if let Some(listed) = self.listed() {
+            return listed.support();
+        }
         let (least, greatest) = self.law.support();
         (
             self.lower.map_or(least, |x| x.max(least)),
@@ -84,6 +118,9 @@ impl Marginal {
 
     /// The value whose `lower` or upper tail is `tail` ≤ ½.
     fn quantile_of_tail(&self, tail: f64, lower: bool) -> f64 {
+        if let Some(listed) = self.listed() {
+            return listed.quantile_of_tail(tail, lower);
+        }
         if let Law::Uniform { .. } = self.law {
             // A truncated uniform law is a narrower one.
             let (from, to) = self.support();
@@ -133,7 +170,11 @@ impl Marginal {
             (&Law::Normal { mean, sd }, None) => (x - mean) / sd,
             (&Law::Lognormal { log_mean, log_sd }, None) if x > 0.0 => (ln(x) - log_mean) / log_sd,
             _ => {
-                let (below, above) = self.tails(x);
+                // The middle of an atom's share of the axis stands for it.
+                let (below, above) = match self.listed() {
+                    Some(listed) => listed.middle_tails(x),
+                    None => self.tails(x),
+                };
                 if below <= above { normal::quantile(below) } else { normal::quantile_upper(above) }
             }
         }
@@ -170,6 +211,9 @@ impl Marginal {
 
     /// Lower and upper tail at `x`, each to its own precision.
     fn tails(&self, x: f64) -> (f64, f64) {
+        if let (Some(listed), false) = (self.listed(), x.is_nan()) {
+            return listed.tails(x);
+        }
         let Some(cut) = &self.cut else { return self.law.tails(x) };
         if x.is_nan() {
             (x, x)
@@ -196,6 +240,10 @@ impl Marginal {
 
     /// ln of the density at `x`; −∞ outside the support.
     pub fn ln_density(&self, x: f64) -> f64 {
+        if let Some(listed) = self.listed() {
+            let (from, to) = listed.support();
+            return if (from..=to).contains(&x) { listed.ln_density(x) } else { f64::NEG_INFINITY };
+        }
         let Some(cut) = &self.cut else { return self.law.ln_density(x) };
         if x < cut.lower || x > cut.upper {
             f64::NEG_INFINITY
@@ -221,12 +269,14 @@ impl Marginal {
 
     /// Mean and standard deviation; for a truncated law one integration gives both.
     pub fn moments(&self) -> (f64, f64) {
+        if let Some(listed) = self.listed() {
+            return listed.moments();
+        }
         let Some(cut) = &self.cut else { return (self.law.mean(), self.law.sd()) };
         if !self.law.has_moments(cut.lower, cut.upper) {
             return (self.law.mean(), self.law.sd());
         }
         match &self.law {
-            Law::Empirical(empirical) => empirical.moments(cut.lower, cut.upper),
             Law::Uniform { .. } => {
                 let (from, to) = self.support();
                 (0.5 * from + 0.5 * to, (to - from) / 12.0_f64.sqrt())

@@ -17,7 +17,7 @@ pub mod readings;
 mod transform;
 mod truncation;
 
-pub use correlation::{Copula, Measure, Refusal, Statement};
+pub use correlation::{Copula, Measure, NEAREST_TO_ONE, Refusal, Statement};
 pub use empirical::Empirical;
 pub use joint::Joint;
 pub use joint_sample::JointSample;

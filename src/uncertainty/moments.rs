@@ -52,7 +52,7 @@ impl Law {
             Law::Student { logarithmic: true, .. } => f64::INFINITY,
             Law::Student { location, degrees, .. } if degrees > 1.0 => location,
             Law::Student { .. } => f64::NAN,
-            Law::Empirical(ref empirical) => empirical.moments(f64::NEG_INFINITY, f64::INFINITY).0,
+            Law::Empirical(ref empirical) => empirical.moments().0,
         }
     }
 
@@ -83,7 +83,7 @@ impl Law {
                 scale * (degrees / (degrees - 2.0)).sqrt()
             }
             Law::Student { .. } => f64::INFINITY,
-            Law::Empirical(ref empirical) => empirical.moments(f64::NEG_INFINITY, f64::INFINITY).1,
+            Law::Empirical(ref empirical) => empirical.moments().1,
         }
     }
 }
@@ -98,8 +98,14 @@ pub(super) fn expectation(
     kink: Option<f64>,
     value: impl Fn(f64) -> f64,
 ) -> f64 {
+    let mass = marginal.mass();
     let half = |lower: bool, kink: Option<f64>| {
         let at = |tail: f64| {
+            // Of a law cut to so little of itself that the tail cannot be written as a number: a share of
+            // the integral below 1e-28.
+            if tail * mass < f64::MIN_POSITIVE {
+                return 0.0;
+            }
             value(if lower { marginal.quantile_lower(tail) } else { marginal.quantile_upper(tail) })
         };
         match kink.filter(|&kink| kink > 0.0 && kink < 0.5) {

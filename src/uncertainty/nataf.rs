@@ -1,5 +1,6 @@
 //! The Nataf model: which normal correlation gives two marginals a stated product-moment correlation.
 
+use super::Empirical;
 use super::marginal::Marginal;
 use crate::error::{Error, Result};
 use crate::numerics::special::normal;
@@ -15,6 +16,9 @@ const NODES: i32 = 2600;
 /// divided by its standard deviation.
 fn coefficients(marginal: &Marginal) -> Vec<f64> {
     let (centre, spread) = marginal.moments();
+    if let Some(listed) = marginal.stepped() {
+        return coefficients_of_steps(listed, spread);
+    }
     let step = 2.0 * REACH / f64::from(NODES);
     let mut sums = vec![0.0; TERMS];
     for node in 0..=NODES {
@@ -28,6 +32,40 @@ fn coefficients(marginal: &Marginal) -> Vec<f64> {
             let next = (z * here - k.sqrt() * before) / (k + 1.0).sqrt();
             (before, here) = (here, next);
             *sum += weight * here;
+        }
+    }
+    sums
+}
+
+/// [`coefficients`] of a quantile function that jumps, where the trapezoidal rule would lose its digits.
+///
+/// By parts, ∫ x(z) h(k) φ dz = ∫ h(k − 1) φ/√k dx: a jump adds its height at its place exactly, and a
+/// linear stretch is cut into short ones.
+fn coefficients_of_steps(listed: &Empirical, spread: f64) -> Vec<f64> {
+    const CUTS: usize = 64;
+    let mut sums = vec![0.0; TERMS];
+    let mut add = |z: f64, height: f64| {
+        let weight = height * normal::density(z) / spread;
+        let (mut before, mut here) = (0.0, 1.0);
+        for (k, sum) in sums.iter_mut().enumerate() {
+            let k = k as f64;
+            *sum += weight * here / (k + 1.0).sqrt();
+            let next = (z * here - k.sqrt() * before) / (k + 1.0).sqrt();
+            (before, here) = (here, next);
+        }
+    };
+    let place = |(below, above): (f64, f64)| {
+        if below <= above { normal::quantile(below) } else { normal::quantile_upper(above) }
+    };
+    for ([from, to], (low, high)) in listed.steps() {
+        if from.0 == to.0 || from.1 == to.1 {
+            add(place(from), high - low);
+            continue;
+        }
+        for cut in 0..CUTS {
+            let share = (cut as f64 + 0.5) / CUTS as f64;
+            let at = |a: f64, b: f64| a * (1.0 - share) + b * share;
+            add(place((at(from.0, to.0), at(from.1, to.1))), (high - low) / CUTS as f64);
         }
     }
     sums

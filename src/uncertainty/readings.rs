@@ -1,5 +1,6 @@
 //! What a handful of readings says: a predictive law for the next value, and the posterior behind it.
 
+use super::empirical::SAME;
 use super::law::Law;
 use crate::error::{Error, Result};
 use crate::numerics::elementary::{exp, ln};
@@ -38,6 +39,13 @@ impl Readings {
         let possible = |x: &f64| x.is_finite() && (!logarithmic || *x > 0.0);
         if !values.iter().all(possible) {
             return Err(Error::argument("a reading is impossible for the law"));
+        }
+        // Before any logarithm: what differs by the rounding of a conversion of units alone is the same.
+        let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let least_value = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let alike = greatest - least_value <= SAME * greatest.abs().max(least_value.abs());
+        if alike && known_sd.is_none() {
+            return Err(Error::argument("the readings are all the same: they show no scatter"));
         }
         let values: Vec<f64> =
             values.iter().map(|&x| if logarithmic { ln(x) } else { x }).collect();
@@ -148,6 +156,9 @@ mod tests {
     fn property_readings_that_show_no_scatter_are_refused() {
         assert!(Readings::new(&[1.0], None, false).is_err());
         assert!(Readings::new(&[1.0, 1.0], None, false).is_err());
+        // 0.062 in and 62 mil in metres: one number, in two conversions that round differently.
+        assert!(Readings::new(&[0.062 * 0.0254, 62.0 * 0.0254e-3], None, false).is_err());
+        assert!(Readings::new(&[0.062 * 0.0254, 62.0 * 0.0254e-3], None, true).is_err());
         assert!(Readings::new(&[1.0, -1.0], None, true).is_err());
         assert!(Readings::new(&[1.0], Some(0.0), false).is_err());
         let known = Readings::new(&[1.0], Some(0.1), false).unwrap();

@@ -33,16 +33,7 @@ impl Truncation {
     /// # Errors
     /// If the limits are reversed, not numbers, or leave no probability between them.
     pub fn new(law: &Law, lower: Option<f64>, upper: Option<f64>) -> Result<Self> {
-        let from = lower.unwrap_or(f64::NEG_INFINITY);
-        let to = upper.unwrap_or(f64::INFINITY);
-        if from.is_nan() || to.is_nan() {
-            return Err(Error::argument("a truncation limit is not a number"));
-        }
-        if from >= to {
-            return Err(Error::argument(format!(
-                "the lower truncation limit {from} is not below the upper one {to}"
-            )));
-        }
+        let (from, to) = ordered(lower, upper)?;
         let (below, above_lower) = law.tails(from);
         let (below_upper, above) = law.tails(to);
         let mass = interval_probability(law, from, to);
@@ -74,6 +65,24 @@ impl Truncation {
     }
 }
 
+/// The ends of an interval, infinite where none is stated.
+///
+/// # Errors
+/// If they are reversed or not numbers.
+pub(super) fn ordered(lower: Option<f64>, upper: Option<f64>) -> Result<(f64, f64)> {
+    let from = lower.unwrap_or(f64::NEG_INFINITY);
+    let to = upper.unwrap_or(f64::INFINITY);
+    if from.is_nan() || to.is_nan() {
+        return Err(Error::argument("a truncation limit is not a number"));
+    }
+    if from >= to {
+        return Err(Error::argument(format!(
+            "the lower truncation limit {from} is not below the upper one {to}"
+        )));
+    }
+    Ok((from, to))
+}
+
 /// The probability that `law` gives to the interval from `from` to `to`.
 pub(super) fn interval_probability(law: &Law, from: f64, to: f64) -> f64 {
     if from >= to {
@@ -88,7 +97,7 @@ pub(super) fn interval_probability(law: &Law, from: f64, to: f64) -> f64 {
     } else {
         (1.0 - below_from - above_to, 1.0)
     };
-    let smooth = !matches!(law, Law::Empirical(_) | Law::Triangular { .. });
+    let smooth = !matches!(law, Law::Triangular { .. });
     if smooth && difference < 0.1 * largest && from.is_finite() && to.is_finite() {
         // The difference of two nearly equal tails would lose digits; over so short an interval the
         // density is a gentle curve.

@@ -2,6 +2,7 @@
 
 use reeldown::numerics::columns::Columns;
 use reeldown::reliability::adaptive::{AdaptiveMonteCarlo, Stop, Until};
+use reeldown::reliability::confidence_sequence::confidence_sequence;
 use reeldown::reliability::demonstration::{Requirement, Verdict};
 use reeldown::reliability::event::Event;
 use reeldown::reliability::probability::Proportion;
@@ -76,4 +77,37 @@ fn property_the_interval_at_the_stop_holds_the_truth_as_often_as_stated() {
         missed += u64::from(!interval.contains(BREACH));
     }
     assert!(missed <= WRONG, "{missed} of {SEEDS} intervals miss the truth");
+}
+
+/// The probability that the interval ever excludes the truth, looked at after every single sample: not simulated but
+/// summed over all paths of the number of breaches.
+#[test]
+fn analytic_the_sequence_ever_excludes_the_truth_no_more_often_than_stated() {
+    for (p, samples, least) in [(0.5, 4000, 0.02), (0.05, 10_000, 0.02), (0.01, 20_000, 0.01)] {
+        let holds = |breaches: u64, samples: u64| {
+            let counts = Proportion::new(breaches, 0, samples).expect("sound");
+            let earned = confidence_sequence(counts, CONFIDENCE).expect("sound");
+            earned.interval().expect("an interval").contains(p)
+        };
+        // Probability of each number of breaches and of no exclusion so far; numbers below `first` are excluded.
+        let (mut paths, mut first, mut excluded) = (vec![1.0], 0u64, 0.0);
+        for n in 1..=samples {
+            let mut next = vec![0.0; paths.len() + 1];
+            for (k, &path) in paths.iter().enumerate() {
+                next[k] += (1.0 - p) * path;
+                next[k + 1] += p * path;
+            }
+            while !next.is_empty() && !holds(first, n) {
+                excluded += next.remove(0);
+                first += 1;
+            }
+            while !next.is_empty() && !holds(first + next.len() as u64 - 1, n) {
+                excluded += next.pop().unwrap_or(0.0);
+            }
+            paths = next;
+        }
+        // Ville's bound is for all time; what is spent by now is part of it, and not next to nothing.
+        assert!(excluded <= 1.0 - CONFIDENCE && excluded > least, "{p}: {excluded}");
+        println!("{p}: {excluded}");
+    }
 }

@@ -45,3 +45,32 @@ fn regression_a_handful_of_breaches_ranks_nothing_and_has_no_band() {
     let row = |line: &&str| line.starts_with("| peak fluid temperature above 450 °F | 0 (0 … 1.8");
     assert!(report.lines().any(|line| row(&line)), "{report}");
 }
+
+/// At 150 s the medians breach: the design point is the nearest way not to. Importance sampling printed 100.4 % there.
+#[test]
+fn regression_where_the_medians_breach_no_way_not_to_is_called_the_most_likely_way_to() {
+    let place = Place::new("medians-breach");
+    place.write("card.toml", include_str!("../../distributions/habe.toml"));
+    let study = "title = \"certain\"\ncard = \"card.toml\"\n[limits]\ntime = { max = \"150 s\" }\n\
+        [sampling]\nsamples = 2000\n[reliability]\nmethods = [\"importance-sampling\", \"subset-simulation\"]\n\
+        [sensitivity]\nbase_samples = 1024\nbootstrap = 100\n[trade]\nsamples = 200\n\
+        [epistemic]\nouter = 200\ninner = 16\n";
+    let study = place.write("study.toml", study);
+    reeldown(&["run", &study, "--out", &place.at("run")]).ended_with(0);
+    let json = String::from_utf8(place.bytes("run/findings.json")).expect("text");
+    let findings: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    let rare = &findings["rare"][0];
+    let estimates = rare["estimates"].as_array().expect("estimates");
+    assert_eq!(estimates.len(), 3);
+    for estimate in estimates {
+        let of = |key: &str| estimate["interval"][key].as_f64().expect("an interval");
+        let p = estimate["probability"].as_f64().expect("a probability");
+        assert!(of("lower") <= p && p <= of("upper") && of("upper") <= 1.0, "{estimate}");
+        assert!(of("lower") < of("upper"), "{estimate}");
+    }
+    assert_eq!(rare["agreement"]["agrees"], true);
+    assert_eq!(rare["design_point"]["medians_breach"], true);
+    let report = String::from_utf8(place.bytes("run/report.md")).expect("text");
+    assert!(report.contains("The medians breach: with every input at its median"), "{report}");
+    assert!(!report.contains("The most likely way to breach lies"), "{report}");
+}

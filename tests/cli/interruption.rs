@@ -1,10 +1,9 @@
-//! Ctrl-C: what was computed stays readable, and the run goes on to the same bytes.
+//! Ctrl-C and sudden death: what was computed stays readable, and the run goes on to the same bytes.
 
 #![cfg(unix)]
 
 use super::determinism::{assert_same, rows, run};
-use super::program::reeldown;
-use super::program::{Answer, Place, program};
+use super::program::{Answer, Place, program, reeldown};
 use std::process::{Command, Stdio};
 use std::thread;
 use std::time::Duration;
@@ -77,6 +76,93 @@ fn property_the_resume_command_can_be_typed_as_printed() {
     let shell = Command::new("sh").args(["-c", &line]).output().expect("sh runs");
     Answer::of(shell).ended_with(3);
     assert_eq!(rows(&place, "it's here"), samples);
+}
+
+/// Finished row groups that the journal of a run under way knows of.
+fn finished_groups(place: &Place, directory: &str) -> usize {
+    let path = place.path().join(directory).join("outcomes.parquet.journal.part");
+    let journal = std::fs::read(path).unwrap_or_default();
+    journal.iter().filter(|&&byte| byte == b'\n').count().saturating_sub(1)
+}
+
+/// Starts a run, kills it once `when` says so, and says whether it was still alive.
+fn killed(place: &Place, arguments: &[&str], when: impl Fn() -> bool) -> bool {
+    let out = place.at("parts");
+    let set = ["--set", "sensitivity.base_samples=64"];
+    let mut child = program()
+        .args(["run", "--quiet", "--out", &out])
+        .args(set)
+        .args(arguments)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let ended = loop {
+        if child.try_wait().expect("a child").is_some() {
+            break true;
+        }
+        if when() {
+            break false;
+        }
+        thread::sleep(Duration::from_millis(1));
+    };
+    // Not a request: the process cannot see it coming.
+    child.kill().expect("kill works");
+    child.wait().expect("it ends");
+    !ended
+}
+
+/// The samples that a run says it has read again.
+fn read_again(place: &Place) -> u64 {
+    let provenance: serde_json::Value =
+        serde_json::from_slice(&place.bytes("parts/provenance.json")).expect("JSON");
+    provenance["samples_read_again"].as_u64().expect("a number")
+}
+
+#[test]
+fn regression_a_killed_run_keeps_its_finished_row_groups() {
+    let place = Place::new("killed");
+    let samples = (5 * 65_536 + 9).to_string();
+    let arguments = ["--samples", samples.as_str()];
+    let two = || finished_groups(&place, "parts") >= 2;
+    assert!(killed(&place, &arguments, two), "it was to be killed after two of six row groups");
+    assert!(!place.path().join("parts/outcomes.parquet").exists());
+    assert!(place.path().join("parts/unfinished.json").exists());
+    let resumed = run(&place, "parts", &[&arguments[..], &["--resume"]].concat()).ended_with(3);
+    assert!(resumed.err.contains("of a run that ended early"), "{}", resumed.err);
+    assert!(read_again(&place) >= 2 * 65_536, "{}", read_again(&place));
+    run(&place, "whole", &arguments).ended_with(3);
+    assert_same(&place, "whole", "parts");
+    assert_eq!(place.unfinished(), Vec::<std::path::PathBuf>::new());
+
+    // Killed at other moments, again and again, on its way from the same table to a longer one: never less than
+    // before, and the same bytes in the end.
+    let longer = (7 * 65_536).to_string();
+    let longer = ["--samples", longer.as_str(), "--resume"];
+    for delay in [0, 5, 20, 50, 100, 200, 400] {
+        let begun = std::time::Instant::now();
+        killed(&place, &longer, || begun.elapsed() >= Duration::from_millis(delay));
+        assert!(rows(&place, "parts") >= 5 * 65_536 + 9, "after {delay} ms");
+    }
+    run(&place, "parts", &longer).ended_with(3);
+    assert!(read_again(&place) >= 5 * 65_536 + 9, "{}", read_again(&place));
+    run(&place, "whole", &longer[..2]).ended_with(3);
+    assert_same(&place, "whole", "parts");
+    assert_eq!(place.unfinished(), Vec::<std::path::PathBuf>::new());
+    assert!(!place.path().join("parts/unfinished.json").exists());
+}
+
+#[test]
+fn regression_without_resume_what_a_killed_run_left_is_removed() {
+    let place = Place::new("killed-anew");
+    let samples = (4 * 65_536).to_string();
+    let one = || finished_groups(&place, "parts") >= 1;
+    assert!(killed(&place, &["--samples", &samples], one));
+    let answer = run(&place, "parts", &["--samples", "400", "--seed", "5"]).ended_with(3);
+    assert!(answer.err.contains("--resume would have kept them"), "{}", answer.err);
+    assert_eq!(place.unfinished(), Vec::<std::path::PathBuf>::new());
+    run(&place, "whole", &["--samples", "400", "--seed", "5"]).ended_with(3);
+    assert_same(&place, "whole", "parts");
 }
 
 #[test]

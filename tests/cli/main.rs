@@ -3,14 +3,17 @@
 mod acceptance;
 mod artefacts;
 mod calibrate;
+mod checksums;
 mod comparing;
 mod dependence;
 mod determinism;
+mod directories;
 mod disk;
 mod errors;
 mod few_breaches;
 mod inspection;
 mod interruption;
+mod listed;
 mod notes;
 mod program;
 mod published;

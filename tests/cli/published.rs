@@ -1,7 +1,8 @@
 //! The published studies in `reports/habe/` and `reports/calibrated/` and the reports beside them are of this version.
 //!
-//! To publish anew: `cargo run --release -- run reports/habe/study.toml --out runs/published`, and copy
-//! from `runs/published/` what is published in `reports/habe/`; likewise `reports/calibrated/`.
+//! To publish anew: `cargo run --release -- run reports/habe/study.toml --out runs/published-habe`, and copy
+//! from `runs/published-habe/` what is published in `reports/habe/`; likewise `reports/calibrated/`, by way of
+//! `runs/published-calibrated/`: a directory belongs to one study.
 
 use super::program::{Answer, Place, program};
 use std::path::{Path, PathBuf};

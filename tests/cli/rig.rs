@@ -184,7 +184,7 @@ fn regression_the_published_page_of_the_paper_is_what_this_version_writes() {
         let kept = std::fs::read(published.join(&file)).expect("a published file");
         assert!(
             place.bytes(&format!("paper/{file}")) == kept,
-            "reports/paper/{file} is not what this version writes: `reeldown paper --out reports/paper`"
+            "reports/paper/{file} is not what this version writes: `reeldown paper --out reports/paper` (with --force where there is no manifest)"
         );
         assert!(!file.ends_with(".svg") || report.contains(&file), "{file} is on the page");
     }

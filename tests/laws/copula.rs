@@ -127,3 +127,16 @@ fn analytic_nataf_refuses_the_unattainable() {
     assert!(nataf::normal_correlation(&skewed, &skewed, f64::NAN).is_err());
     assert!(normal::quantile(0.5).abs() == 0.0);
 }
+
+#[test]
+fn property_a_lone_correlation_of_nearly_one_contradicts_nobody() {
+    let lone = |rho: f64| {
+        Copula::new(2, &[Statement { first: 0, second: 1, measure: Measure::Normal(rho) }])
+    };
+    for rho in [0.999_999_999_99, -0.999_999_999_99] {
+        let refusal = lone(rho).unwrap_err();
+        assert!(refusal.reason.contains("makes them one input"), "{refusal}");
+        assert!(!refusal.reason.contains("contradict"), "{refusal}");
+    }
+    assert!(lone(0.999_999).is_ok());
+}

@@ -3,6 +3,7 @@
 mod copula;
 mod families;
 mod joint_sample;
+mod listed;
 mod properties;
 mod published;
 mod readings;

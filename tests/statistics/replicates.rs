@@ -1,5 +1,6 @@
 //! Student-t intervals over replicates, and their absence.
 
+use reeldown::numerics::interval::Interval;
 use reeldown::reliability::probability::Proportion;
 use reeldown::reliability::replicates::{from_replicate_counts, from_replicates};
 use reeldown::streams::{Purpose, open_uniform, stream};
@@ -69,7 +70,7 @@ fn property_a_bound_from_a_few_breaches_holds_as_often_as_it_says() {
     const REPLICATES: usize = 16;
     const SAMPLES: u64 = 1200;
     const TRIALS: u64 = 2000;
-    for mean in [2.4, 3.5, 5.0] {
+    for (mean, rare) in [(2.4, true), (3.5, true), (5.0, true), (2.4, false), (5.0, false)] {
         let p = mean / (REPLICATES as f64 * SAMPLES as f64);
         let (mut below, mut stated, mut narrow) = (0, 0, 0);
         for trial in 0..TRIALS {
@@ -83,18 +84,21 @@ fn property_a_bound_from_a_few_breaches_holds_as_often_as_it_says() {
                         breaches += 1;
                         at -= open_uniform(&mut draws).ln() / p;
                     }
-                    Proportion::new(breaches, 0, SAMPLES).unwrap()
+                    // Few samples without a breach are few breaches seen from the other side.
+                    Proportion::new(if rare { breaches } else { SAMPLES - breaches }, 0, SAMPLES)
+                        .unwrap()
                 })
                 .collect();
             // Two-sided at 80 %: each end is a bound at 90 %.
             let found = from_replicate_counts(&counts, 0.8).unwrap().probability.interval;
             let Some(interval) = found.interval() else { continue };
             stated += 1;
-            below += u64::from(interval.upper < p);
+            let missed = |i: &Interval| if rare { i.upper < p } else { i.lower > 1.0 - p };
+            below += u64::from(missed(interval));
             let shares: Vec<f64> =
                 counts.iter().map(|c| c.breaches as f64 / SAMPLES as f64).collect();
             let alone = from_replicates(&shares, 0.8).unwrap().probability.interval;
-            narrow += u64::from(alone.interval().is_some_and(|i| i.upper < p));
+            narrow += u64::from(alone.interval().is_some_and(missed));
         }
         // Four standard errors of a share of 10 % among so many.
         let most = 0.1 * stated as f64 + 4.0 * (0.09 * stated as f64).sqrt();

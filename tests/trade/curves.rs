@@ -1,7 +1,7 @@
 //! The trade of the HABE study against independent reruns.
 
 use reeldown::campaign::common_numbers::{Breaches, Change, CommonSample, Event};
-use reeldown::campaign::trade::{run_trade, trade_factors};
+use reeldown::campaign::trade::{design_value_anew, run_trade, trade_factors};
 use reeldown::campaign::{self, Progress, Record};
 use reeldown::streams::Purpose;
 use reeldown::study::{Override, Study};
@@ -163,4 +163,26 @@ fn property_a_design_value_agrees_with_independent_reruns() {
         let allowed = 4.5 * (2.0 * p * (1.0 - p) / 4000.0).sqrt();
         assert!((again - here).abs() <= allowed, "{}: {here} {again}", setting.value);
     }
+}
+
+/// The study's own points chose the value; others say what P is there. Two such estimates from independent points.
+#[test]
+fn property_p_at_the_best_design_value_is_of_points_that_the_search_has_not_seen() {
+    let study = study(&[]);
+    let target = study.tighten.design[0].target;
+    let quantity = target.parameter.info().quantity;
+    let value = reeldown::units::parse("101600 cSt", quantity).expect("a viscosity");
+    let (base, there) = design_value_anew(&study, target, value, 4000).expect("a rerun");
+    let run = CommonSample::of_run(&study, 4000).expect("the run's points");
+    let progress = Progress::default();
+    let searched = run.base(&progress).expect("a rerun");
+    let change = Change::default().and_design(target, value);
+    let at_value = run.changed(&change, &progress).expect("a rerun");
+    for (fresh, searched) in [(&base, &searched), (&there, &at_value)] {
+        let (p, q) = (share(fresh), share(searched));
+        assert!(p != q, "{p}: the same points");
+        let mean = 0.5 * (p + q);
+        assert!((p - q).abs() < 4.5 * (2.0 * mean * (1.0 - mean) / 4000.0).sqrt(), "{p} {q}");
+    }
+    assert!(share(&there) < 0.3 * share(&base));
 }

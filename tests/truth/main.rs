@@ -4,6 +4,7 @@ mod benchmarks;
 mod breach_probability;
 mod driven_runs;
 mod first_order;
+mod near_certainty;
 mod paper_statements;
 mod reference_descents;
 mod reliability_methods;

@@ -218,6 +218,14 @@ impl Law {
     pub fn empirical(values: Vec<f64>, weights: Option<Vec<f64>>) -> Result<Law> {
         Empirical::new(values, weights).map(Law::Empirical)
     }
+
+    /// The law of `values` with probabilities in proportion to `weights`, or equal ones, and of nothing between them.
+    ///
+    /// # Errors
+    /// As [`Empirical::discrete`].
+    pub fn discrete(values: Vec<f64>, weights: Option<Vec<f64>>) -> Result<Law> {
+        Empirical::discrete(values, weights).map(Law::Empirical)
+    }
 }
 
 /// Refuses a mode outside the bounds.
