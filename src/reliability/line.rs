@@ -38,12 +38,9 @@ use crate::streams::{Purpose, stream};
 pub struct LineOptions {
     /// Independent scrambles of the lines: the interval is from their scatter.
     pub scrambles: u32,
-    /// Lines of a scramble at first; they are doubled …
-    pub first_lines: u64,
-    /// … up to this many …
-    pub most_lines: u64,
-    /// … until the estimate's relative standard error is below this.
-    pub relative_error: f64,
+    /// Lines of a scramble. Not as many as it takes: a number that depends on the scatter seen so far is reached soonest
+    /// where that happens to be small, and the interval is too narrow then.
+    pub lines: u64,
     /// A line is followed from −reach to reach.
     pub reach: f64,
     /// Confidence of the interval.
@@ -57,10 +54,8 @@ pub struct LineOptions {
 impl Default for LineOptions {
     fn default() -> Self {
         LineOptions {
-            scrambles: 16,
-            first_lines: 16,
-            most_lines: 128,
-            relative_error: 0.01,
+            scrambles: 32,
+            lines: 32,
             reach: 8.2,
             confidence: 0.95,
             search: SearchOptions::default(),
@@ -69,6 +64,8 @@ impl Default for LineOptions {
     }
 }
 
+/// Lines of a scramble after which the checks are asked first.
+const FIRST_LINES: u64 = 8;
 /// Limits less probable than this share of the most probable one get no lines of their own.
 const NEGLIGIBLE_SHARE: f64 = 1e-4;
 /// From this first-order probability up lines across a second design point would be met by chance; below it
@@ -104,8 +101,7 @@ pub fn line_sampling(
     event: Event,
     options: &LineOptions,
 ) -> Result<Estimate> {
-    let lines = [u64::from(options.scrambles), options.first_lines, options.most_lines];
-    if lines.contains(&0) || options.scrambles < 2 || !(2.0..38.0).contains(&options.reach) {
+    if options.lines == 0 || options.scrambles < 2 || !(2.0..38.0).contains(&options.reach) {
         return Err(Error::argument(
             "line sampling needs two scrambles, a line in each, and a reach between 2 and 38",
         ));
@@ -181,23 +177,17 @@ fn scrambled(
         options,
         lines: found.iter().map(|_| Lines::default()).collect(),
     };
-    let mut count = options.first_lines;
+    // A few lines show soon enough where a line has more than one crossing.
+    let mut count = options.lines.min(FIRST_LINES);
     let fit = loop {
         for (k, group) in found.iter().enumerate() {
             sampling.extend(&mut evaluator, group, k, count)?;
         }
         let fit = sampling.estimate(event);
-        let good = |estimate: &Estimate| {
-            estimate.relative_standard_error().is_some_and(|error| error <= options.relative_error)
-        };
-        let enough = match &fit {
-            Ok(estimate) => good(estimate) || 2 * count > options.most_lines,
-            Err((_, hopeless)) => *hopeless || 2 * count > options.most_lines,
-        };
-        if enough {
+        if count == options.lines || matches!(fit, Err((_, true))) {
             break fit;
         }
-        count *= 2;
+        count = options.lines;
     };
     spent.evaluations += evaluator.evaluations;
     spent.faults += evaluator.faults;
@@ -363,7 +353,7 @@ impl Sampling<'_> {
         let across = evaluator.dimension() - 1;
         let seed = self.options.seed ^ (k as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let mut normals = Columns::new((end - first) as usize, across.max(1));
-        let all = scrambles * count.max(self.options.most_lines);
+        let all = scrambles * self.options.lines;
         let scrambles = self.options.scrambles;
         let purpose = Purpose::LineSampling;
         Sampler::new(Design::Sobol, across.max(1), all, scrambles, seed, purpose)?
@@ -379,8 +369,9 @@ impl Sampling<'_> {
                 .collect();
             let crossings = self.follow(evaluator, group, &mirror, &mut lines)?;
             self.probe(evaluator, group, k, &mirror, (&lines, &crossings), first + begin as u64)?;
-            for crossings in &crossings {
+            for (li, crossings) in crossings.iter().enumerate() {
                 let value = self.value(group, crossings);
+                if value.is_none() { eprintln!("LOST {k} {crossings:?} {:?}", lines[li].seen); }
                 self.lines[k].take(value);
             }
         }

@@ -131,5 +131,6 @@ fn outside(places: &[(f64, f64)], slope: Option<f64>, reach: f64) -> Result<Foun
     if next != root && places.iter().any(|place| place.0 == next) {
         return Err(nowhere);
     }
-    Ok((root, error, breach == (t > root), next))
+    // By the slope and not by where the place lies: on the crossing itself that is a matter of rounding.
+    Ok((root, error, slope < 0.0, next))
 }
