@@ -28,6 +28,8 @@ pub enum Error {
     },
     /// An argument that a numerical routine cannot use.
     Argument(String),
+    /// Several of them, two at least, in the order in which they were found.
+    Several(Vec<Error>),
 }
 
 /// One mistake in one text: where it is, what was expected, what to do.
@@ -77,6 +79,36 @@ impl Error {
         }
     }
 
+    /// The name of the text that is wrong.
+    fn origin(&self) -> Option<&str> {
+        match self {
+            Error::Input(diagnostic) => Some(&diagnostic.origin),
+            _ => None,
+        }
+    }
+
+    /// Several errors as one, those of a text in its order; one of them stays itself.
+    pub fn several(errors: Vec<Error>) -> Self {
+        let mut flat: Vec<Error> = Vec::new();
+        for error in errors {
+            match error {
+                Error::Several(inner) => flat.extend(inner),
+                one => flat.push(one),
+            }
+        }
+        // A reader goes through a text from its start; texts stay in the order in which they were read.
+        let origins: Vec<String> =
+            flat.iter().filter_map(Error::origin).map(str::to_owned).collect();
+        flat.sort_by_key(|error| match error {
+            Error::Input(d) => (origins.iter().position(|o| *o == d.origin), d.span.start),
+            _ => (None, 0),
+        });
+        match flat.len() {
+            1 => flat.swap_remove(0),
+            _ => Error::Several(flat),
+        }
+    }
+
     /// An error about an argument.
     pub fn argument(message: impl Into<String>) -> Self {
         Error::Argument(message.into())
@@ -105,6 +137,13 @@ impl fmt::Display for Error {
                 if help.is_empty() { Ok(()) } else { write!(f, "; {help}") }
             }
             Error::Argument(message) => f.write_str(message),
+            Error::Several(errors) => {
+                for (k, error) in errors.iter().enumerate() {
+                    let end = if k + 1 < errors.len() { "\n" } else { "" };
+                    write!(f, "{error}{end}")?;
+                }
+                Ok(())
+            }
         }
     }
 }

@@ -6,11 +6,13 @@
 //! - [`best_fit()`]: the most probable parameters;
 //! - [`tempering`] and [`posterior`]: the posterior and the evidence by sequential Monte Carlo, in replicates that check
 //!   each other;
+//! - [`consistency`]: whether data agree, with each other and with the prior;
 //! - [`screening`]: what is suspicious about readings before they are used;
 //! - [`narrowing`]: what a further measurement would teach.
 
 pub mod best_fit;
 mod cloud;
+pub mod consistency;
 mod likelihood;
 pub mod narrowing;
 pub mod noise;

@@ -57,6 +57,10 @@ pub enum Suspicion {
 const GAP: f64 = 3.5;
 /// Robust standard deviations beyond which a reading is an outlier.
 const OUTLYING: f64 = 12.0;
+/// How near to a whole number of steps a difference must be.
+const WHOLE: f64 = 0.01;
+/// Different readings from which on a step can be told.
+const FEWEST_STEPS: usize = 10;
 /// Equal readings in a row that make a sensor suspect.
 const STUCK: usize = 8;
 /// Standard deviations of the prior prediction beyond which readings are not explained.
@@ -213,4 +217,24 @@ pub fn median(values: &[f64]) -> Option<f64> {
         _ if n % 2 == 1 => Some(sorted[n / 2]),
         _ => Some(0.5 * (sorted[n / 2 - 1] + sorted[n / 2])),
     }
+}
+
+/// The step to which readings are rounded: the smallest difference between any two, if all are whole multiples of it apart;
+/// none for readings that are not rounded, as far as one can see.
+pub fn resolution(values: &[f64]) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let range = sorted.last()? - sorted.first()?;
+    let differences: Vec<f64> = sorted
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .filter(|difference| *difference > 1e-9 * range)
+        .collect();
+    let step = differences.iter().copied().reduce(f64::min)?;
+    let whole = |difference: &f64| {
+        let steps = difference / step;
+        (steps - steps.round()).abs() < WHOLE
+    };
+    // A few different values could be anything.
+    (differences.len() >= FEWEST_STEPS && differences.iter().all(whole)).then_some(step)
 }

@@ -4,17 +4,21 @@ use super::calibrate_arguments::CalibrateArguments;
 use super::figure_files::write_report_figures;
 use super::output::{say, say_error, say_notes};
 use super::run::quoted;
+use super::watch::{Watch, stop_on_interrupt};
 use super::{Ending, done};
+use crate::campaign::calibration::duplicates::refuse_twice;
 use crate::campaign::calibration::{self, Calibration, Channel, Options, is_hardware};
 use crate::campaign::{self, Progress};
 use crate::descent::driven::Drive;
 use crate::error::{Error, Result};
 use crate::findings::calibration::{self as findings, CalibrationFinding};
 use crate::render;
-use crate::store::{Contents, Field, ResultDirectory, read_number_columns, write_table};
+use crate::store::{Contents, Field, PARQUET, ResultDirectory, write_table};
+use crate::study::measured_run::Acceptance;
 use crate::study::{MeasuredRun, Study, sha256};
 use crate::units;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// The findings as one tree.
 const FINDINGS: &str = "findings.json";
@@ -44,12 +48,17 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
     };
     let directory = ResultDirectory::open(&directory, contents)?;
     say_notes(&study);
-    let runs = load(&arguments.data)?;
-    let held_out = load(&arguments.hold_out)?;
+    let mut acceptance = Acceptance::default();
+    if arguments.gaps {
+        acceptance.longest_step = f64::INFINITY;
+    }
+    let runs = load(&arguments.data, acceptance)?;
+    let held_out = load(&arguments.hold_out, acceptance)?;
     let mut all: Vec<&MeasuredRun> = runs.iter().map(|(run, _)| run).collect();
     let calibrated = all.clone();
     let unseen: Vec<&MeasuredRun> = held_out.iter().map(|(run, _)| run).collect();
     all.extend(&unseen);
+    refuse_twice(&calibrated, &unseen)?;
     if !arguments.accept {
         let screened = calibration::screen(&study, &all, &options)?;
         if let Some(why) = findings::refusal(&findings::suspicions(&screened)) {
@@ -58,9 +67,17 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
             )));
         }
     }
+    let progress = Arc::new(Progress::default());
+    stop_on_interrupt(&progress)?;
     let found = campaign::with_threads(arguments.threads.asked(), || {
-        calibration::calibrate(&study, &calibrated, &unseen, &options, &Progress::default())
+        let _watch =
+            Watch::start(&progress, calibration::about(&options, &calibrated), "calibrating");
+        calibration::calibrate(&study, &calibrated, &unseen, &options, &progress)
     })??;
+    let Some(found) = found else {
+        say_error("stopped before the posterior was found: nothing is written");
+        return Ok(Ending::Interrupted);
+    };
     let files: Vec<String> =
         runs.iter().chain(&held_out).map(|(_, digest)| digest.clone()).collect();
     let finding = findings::calibration(&study, &found, &all, &files, command(arguments))?;
@@ -70,7 +87,8 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
     directory.write_text(FINDINGS, &format!("{json}\n"))?;
     write_report_figures(&directory, &figures)?;
     directory.write_text(REPORT, &render::calibration_markdown(&finding, &figures))?;
-    if finding.accepted {
+    let written = finding.accepted || finding.converged && arguments.accept;
+    if written {
         write_cards(&directory, &study, &found, &finding)?;
     }
     let place = directory.path().to_owned();
@@ -80,14 +98,20 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
     } else {
         say(&render::calibration_terminal(&finding))?;
     }
-    if !finding.accepted {
-        say_error(&format!("no card is written; the report is in {}", place.display()));
-        return Ok(Ending::Undecided);
-    }
-    if !arguments.json {
+    if written && !arguments.json {
         say(&format!("\nthe card: {}", place.join(CARD).display()))?;
     }
-    Ok(Ending::Done)
+    if finding.accepted {
+        return Ok(Ending::Done);
+    }
+    if !written {
+        let way = match finding.converged {
+            true => " (--accept writes it nonetheless)",
+            false => "",
+        };
+        say_error(&format!("no card is written{way}; the report is in {}", place.display()));
+    }
+    Ok(Ending::Undecided)
 }
 
 fn options(arguments: &CalibrateArguments, study: &Study) -> Result<Options> {
@@ -113,12 +137,51 @@ fn options(arguments: &CalibrateArguments, study: &Study) -> Result<Options> {
     options.discrepancy = match arguments.discrepancy.as_deref() {
         None => options.discrepancy,
         Some("none") => None,
-        Some(share) => Some(positive("--discrepancy", share, units::Quantity::Number)?),
+        Some(share) => {
+            Some(at_least("--discrepancy", share, units::Quantity::Number, Least::Positive)?)
+        }
     };
-    for statement in &arguments.sensor_sd {
-        let wrong = |why: String| {
-            Error::argument(format!("--sensor-sd {statement}: {why}; write speed=\"0.02 ft/s\""))
-        };
+    let sd = |option: &str, statements: &[String], example: &str, of: QuantityOf, least| {
+        channel_values((option, example), statements, of, least)
+    };
+    let difference = |channel: Channel| channel.quantity().of_difference();
+    let share = |_| units::Quantity::Number;
+    options.sensor_sd = sd(
+        "--sensor-sd",
+        &arguments.sensor_sd,
+        "speed=\"0.02 ft/s\"",
+        difference,
+        Least::Positive,
+    )?;
+    options.gain_sd = sd("--gain-sd", &arguments.gain_sd, "force=\"1 %\"", share, Least::Zero)?;
+    options.offset_sd =
+        sd("--offset-sd", &arguments.offset_sd, "fluid=\"2 °F\"", difference, Least::Zero)?;
+    Ok(options)
+}
+
+/// The quantity of a channel's value.
+type QuantityOf = fn(Channel) -> units::Quantity;
+
+/// The smallest value that an option takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Least {
+    /// Anything above zero.
+    Positive,
+    /// Zero, for none.
+    Zero,
+}
+
+/// Values stated for channels, such as speed="0.02 ft/s"; `option` with an example of what to write.
+fn channel_values(
+    (option, example): (&str, &str),
+    statements: &[String],
+    quantity: QuantityOf,
+    least: Least,
+) -> Result<Vec<(Channel, f64)>> {
+    let mut values: Vec<(Channel, f64)> = Vec::new();
+    for statement in statements {
+        let wrong =
+            |why: String| Error::argument(format!("{option} {statement}: {why}; write {example}"));
         let (name, value) = statement
             .split_once('=')
             .ok_or_else(|| wrong("expected a channel and its standard deviation".to_owned()))?;
@@ -126,35 +189,40 @@ fn options(arguments: &CalibrateArguments, study: &Study) -> Result<Options> {
             let names = Channel::ALL.map(Channel::name).join(", ");
             wrong(format!("there is no channel {}, only {names}", name.trim()))
         })?;
-        let quantity = channel.quantity().of_difference();
-        let sd = positive("--sensor-sd", value.trim().trim_matches('"'), quantity)?;
-        options.sensor_sd.push((channel, sd));
+        if values.iter().any(|(other, _)| *other == channel) {
+            return Err(wrong(format!("{} is stated twice", channel.name())));
+        }
+        let text = value.trim().trim_matches('"');
+        values.push((channel, at_least(option, text, quantity(channel), least)?));
     }
-    Ok(options)
+    Ok(values)
 }
 
-fn positive(option: &str, text: &str, quantity: units::Quantity) -> Result<f64> {
+fn at_least(option: &str, text: &str, quantity: units::Quantity, least: Least) -> Result<f64> {
     let value = units::parse(text, quantity).map_err(|error| {
         Error::argument(format!("{option} {text}: {}, {}", error.problem, error.expected))
     })?;
-    match value > 0.0 && value.is_finite() {
+    let (enough, expected) = match least {
+        Least::Positive => (value > 0.0, "a positive number"),
+        Least::Zero => {
+            (value >= 0.0, "a number that is not negative; zero for an error that is not there")
+        }
+    };
+    match enough && value.is_finite() {
         true => Ok(value),
-        false => Err(Error::argument(format!("{option} {text}: expected a positive number"))),
+        false => Err(Error::argument(format!("{option} {text}: expected {expected}"))),
     }
 }
 
 /// Runs with the SHA-256 of their files.
-fn load(paths: &[PathBuf]) -> Result<Vec<(MeasuredRun, String)>> {
+fn load(paths: &[PathBuf], acceptance: Acceptance) -> Result<Vec<(MeasuredRun, String)>> {
     let mut runs: Vec<(MeasuredRun, String)> = Vec::new();
     for path in paths {
-        let run = MeasuredRun::load(path, Default::default(), read_number_columns)?;
-        let bytes = std::fs::read(path).map_err(|reason| Error::file(path, "read", reason, ""))?;
-        if let Some((other, _)) = runs.iter().find(|(other, _)| other.digest == run.digest) {
-            return Err(Error::argument(format!(
-                "{} and {} hold the same readings: each run counts once",
-                other.origin, run.origin
-            )));
+        let run = MeasuredRun::load(path, acceptance, PARQUET)?;
+        if let Some(note) = run.note() {
+            say_error(&format!("note: {note}"));
         }
+        let bytes = std::fs::read(path).map_err(|reason| Error::file(path, "read", reason, ""))?;
         runs.push((run, sha256(&bytes)));
     }
     Ok(runs)
@@ -209,12 +277,21 @@ fn command(arguments: &CalibrateArguments) -> String {
     for (option, value) in text {
         words.extend(value.iter().map(|value| format!("{option} {}", quoted(value))));
     }
-    words.extend(arguments.sensor_sd.iter().map(|sd| format!("--sensor-sd {}", quoted(sd))));
+    let stated = [
+        ("--sensor-sd", &arguments.sensor_sd),
+        ("--gain-sd", &arguments.gain_sd),
+        ("--offset-sd", &arguments.offset_sd),
+    ];
+    for (option, statements) in stated {
+        words.extend(statements.iter().map(|sd| format!("{option} {}", quoted(sd))));
+    }
     words.extend(arguments.heavy_tails.iter().map(|df| format!("--heavy-tails {df}")));
     words.extend(arguments.particles.iter().map(|n| format!("--particles {n}")));
     words.extend(arguments.replicates.iter().map(|n| format!("--replicates {n}")));
-    if arguments.accept {
-        words.push("--accept".to_owned());
+    for (flag, given) in [("--gaps", arguments.gaps), ("--accept", arguments.accept)] {
+        if given {
+            words.push(flag.to_owned());
+        }
     }
     words.extend(arguments.study.set.iter().map(|set| format!("--set {}", quoted(set))));
     words.join(" ")

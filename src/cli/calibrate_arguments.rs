@@ -20,6 +20,14 @@ pub(super) struct CalibrateArguments {
     /// Standard deviation of a channel's sensor, such as speed="0.02 ft/s"; estimated where not stated
     #[arg(long, value_name = "CHANNEL=VALUE")]
     pub sensor_sd: Vec<String>,
+    /// Standard deviation of what a channel's readings err by in proportion, the same in every run, such as force="0.5 %";
+    /// zero for none [default: 1 % of force, speed and line, none of temperatures]
+    #[arg(long, value_name = "CHANNEL=SHARE", allow_hyphen_values = true)]
+    pub gain_sd: Vec<String>,
+    /// Standard deviation of what a channel's readings err by alike, the same in every run, such as fluid="1 °F"; zero for
+    /// none [default: 2 °F of each thermometer, none of the others]
+    #[arg(long, value_name = "CHANNEL=VALUE", allow_hyphen_values = true)]
+    pub offset_sd: Vec<String>,
     /// What the model's discrepancy is expected to be, as a share of each channel's range; none for a
     /// model that is taken as right [default: 1 %]
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
@@ -27,7 +35,11 @@ pub(super) struct CalibrateArguments {
     /// Noise with heavy tails, Student's t with so many degrees of freedom: outliers count less
     #[arg(long, value_name = "DF", value_parser = degrees_of_freedom)]
     pub heavy_tails: Option<f64>,
-    /// Calibrate even if a unit seems wrong or the card cannot explain the readings
+    /// Take records with gaps as they are, linear across them
+    #[arg(long)]
+    pub gaps: bool,
+    /// Calibrate even if a unit seems wrong or the card cannot explain the readings, and write the card even if the data
+    /// contradict each other
     #[arg(long)]
     pub accept: bool,
     /// Particles of each replicate [default: 1000]

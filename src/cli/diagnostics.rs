@@ -4,7 +4,10 @@ use crate::error::{Diagnostic, Error};
 use crate::render::Style;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
-/// One error as text.
+/// Errors shown at most.
+const MOST_SHOWN: usize = 20;
+
+/// One error, or several, as text.
 pub(super) fn render(error: &Error, style: Style) -> String {
     let renderer = match style {
         Style::Plain => Renderer::plain(),
@@ -19,6 +22,15 @@ pub(super) fn render(error: &Error, style: Style) -> String {
                 group = group.element(Level::HELP.message(help.as_str()));
             }
             renderer.render(&[group])
+        }
+        Error::Several(errors) => {
+            let shown = errors.iter().take(MOST_SHOWN).map(|error| render(error, style));
+            let more = match errors.len().saturating_sub(MOST_SHOWN) {
+                0 => format!("{} mistakes", errors.len()),
+                more => format!("{} mistakes, {more} of them not shown", errors.len()),
+            };
+            let count = renderer.render(&[Group::with_title(Level::ERROR.primary_title(more))]);
+            shown.chain([count]).collect::<Vec<_>>().join("\n\n")
         }
         Error::Argument(message) => {
             renderer.render(&[Group::with_title(Level::ERROR.primary_title(message.as_str()))])

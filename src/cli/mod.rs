@@ -22,9 +22,10 @@ mod tighten;
 mod trade_tables;
 mod watch;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::units::spelling::nearest;
 use arguments::{Arguments, Command};
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 use output::{say, say_error};
 use std::process::ExitCode;
 
@@ -75,7 +76,10 @@ pub fn main() -> ExitCode {
 
 fn carry_out(arguments: Arguments) -> Result<Ending> {
     match arguments.command {
-        None => run::run(&arguments.run),
+        None => {
+            misspelt_command(arguments.run.study.study.as_deref())?;
+            run::run(&arguments.run)
+        }
         Some(Command::Run(run)) => run::run(&run),
         Some(Command::Descend(descend)) => descend::descend(&descend),
         Some(Command::Calibrate(calibrate)) => calibrate::calibrate(&calibrate),
@@ -90,6 +94,24 @@ fn carry_out(arguments: Arguments) -> Result<Ending> {
         Some(Command::Completions { shell }) => describe::completions(shell),
         Some(Command::Man) => describe::man(),
     }
+}
+
+/// A first word that is no file but nearly a command was meant as that.
+fn misspelt_command(study: Option<&std::path::Path>) -> Result<()> {
+    let Some(word) = study.filter(|path| !path.exists()).and_then(std::path::Path::to_str) else {
+        return Ok(());
+    };
+    // A path or a file with an ending is a study.
+    if word.contains(['/', '\\', '.']) {
+        return Ok(());
+    }
+    let arguments = Arguments::command();
+    let names: Vec<&str> = arguments.get_subcommands().map(|command| command.get_name()).collect();
+    let help = match nearest(word, names.iter().copied()) {
+        Some(near) => format!("did you mean `reeldown {near}`?"),
+        None => format!("the commands are {}", names.join(", ")),
+    };
+    Err(Error::argument(format!("there is no command and no study file called {word}; {help}")))
 }
 
 /// Prints lines to standard output and says that all is well.

@@ -5,9 +5,9 @@ use super::figure_files::write_report_figures;
 use super::run::quoted;
 use super::{Ending, done};
 use crate::error::{Error, Result};
-use crate::findings::paper::{PaperFinding, paper as findings};
+use crate::findings::paper::{PaperFinding, Verdict, paper as findings};
 use crate::physics::Parameter;
-use crate::render::{paper_page, table};
+use crate::render::{paper_count, paper_page, table};
 use crate::store::{Contents, ResultDirectory};
 use crate::study::Study;
 use crate::units::engineering;
@@ -37,21 +37,26 @@ pub(super) fn paper(arguments: &PaperArguments) -> Result<Ending> {
     }
     let rows = finding.statements.iter().map(|statement| {
         [
-            if statement.agrees { "pass" } else { "FAIL" }.to_owned(),
+            match statement.verdict {
+                Verdict::Pass => "pass",
+                Verdict::Fail => "FAIL",
+                Verdict::Undecided => "undecided",
+                Verdict::NoTest => "no test",
+            }
+            .to_owned(),
             statement.place.to_owned(),
             statement.says.to_owned(),
             statement.found.clone(),
         ]
     });
-    let agree = finding.statements.iter().filter(|statement| statement.agrees).count();
     let mut text = format!(
-        "{agree} of the paper's {} statements agree\n\n{}\n",
-        finding.statements.len(),
+        "{}\n\n{}\n",
+        paper_count(&finding.statements),
         table(&["", "where", "the paper says", "here"], 0..0, rows, Some(118))
     );
     text +=
         &format!("\nBy the {} model, but for the dynamic curve of Fig. 4.\n", finding.modes.model);
-    for statement in finding.statements.iter().filter(|statement| !statement.agrees) {
+    for statement in finding.statements.iter().filter(|s| s.verdict != Verdict::Pass) {
         if let Some(remark) = &statement.remark {
             text += &format!("\n{}: {remark}.\n", statement.place);
         }

@@ -62,9 +62,9 @@ pub(super) fn row_digest(study: &Study) -> String {
     rows.tighten.design.clear();
     rows.epistemic = EpistemicPlan { outer: 0, inner: 0 };
     for input in &mut rows.inputs {
-        input.cost = Default::default();
         // When it becomes known, and with what it is looked at, moves no sample.
         input.known = crate::study::Known::Never;
+        input.cost = crate::study::TighteningCost::usual(input.target.parameter, input.known);
         input.group = None;
         input.nature = Nature::Unknown;
     }
@@ -125,15 +125,6 @@ struct Recorded {
 impl Files for Recorded {
     fn card(&mut self, _: &str, _: bool) -> std::result::Result<NamedText, String> {
         self.cards.pop_front().ok_or_else(|| "the footer lacks it".to_owned())
-    }
-
-    fn column(
-        &mut self,
-        card: &str,
-        name: &str,
-        column: &str,
-    ) -> std::result::Result<Vec<f64>, String> {
-        crate::study::read_column(card, name, column, PARQUET)
     }
 
     fn sample(&mut self, card: &str, name: &str) -> std::result::Result<SampleFile, String> {

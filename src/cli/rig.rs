@@ -2,18 +2,18 @@
 
 use super::descend::{outcome_json, outcome_table, write_trace};
 use super::figure_files::write_figures;
-use super::output::say_notes;
+use super::output::{say_error, say_notes};
 use super::rig_arguments::{RigArguments, option};
 use super::{Ending, done};
 use crate::descent::driven::Drive;
 use crate::descent::{Outcome, OutcomeQuantity};
 use crate::error::{Error, Result};
-use crate::findings::rig::{self, PlanOptions, RigRun};
+use crate::findings::rig::{self, Equipment, PlanOptions, RigRun};
 use crate::physics::Parameter;
 use crate::render::{
     rig_comparison_terminal, rig_figures, rig_mode_figures, rig_plan_terminal, table,
 };
-use crate::store::read_number_columns;
+use crate::store::PARQUET;
 use crate::study::measured_run::Acceptance;
 use crate::study::{Limit, MeasuredRun, Study};
 use crate::units::{Quantity, System, engineering, format_engineering};
@@ -24,21 +24,18 @@ use serde_json::{Value, json};
 pub(super) fn rig(arguments: &RigArguments) -> Result<Ending> {
     let study = arguments.study.load(&[])?;
     study.design.validate()?;
-    let proof_load_n = option("--proof-load", &arguments.proof_load, Quantity::Force)?;
-    if proof_load_n <= 0.0 {
-        return Err(Error::argument("--proof-load: a proof load is positive"));
-    }
+    let equipment = arguments.equipment(&study.design)?;
     let levels = levels(arguments)?;
     if arguments.compare || arguments.plan.is_some() {
         say_notes(&study);
     }
     if let Some(runs) = arguments.plan {
-        return plan(arguments, &study, usize::from(runs), proof_load_n);
+        return plan(arguments, &study, usize::from(runs), equipment);
     }
     if arguments.compare {
-        return compare(arguments, &study, levels.map(|level| level.map(|(_, v)| v)), proof_load_n);
+        return compare(arguments, &study, levels.map(|level| level.map(|(_, v)| v)), &equipment);
     }
-    single(arguments, &study, levels, proof_load_n)
+    single(arguments, &study, levels, equipment.proof_load_n)
 }
 
 /// The levels that were given, by mode.
@@ -68,8 +65,10 @@ fn single(
         (Some(path), _) => {
             let longest_step =
                 if arguments.gaps { f64::INFINITY } else { Acceptance::default().longest_step };
-            let measured =
-                MeasuredRun::load(path, Acceptance { longest_step }, read_number_columns)?;
+            let measured = MeasuredRun::load(path, Acceptance { longest_step }, PARQUET)?;
+            if let Some(note) = measured.note() {
+                say_error(&format!("note: {note}"));
+            }
             let drive = arguments.by.map_or(measured.preferred_drive(), Drive::from);
             let run = rig::recorded(&study.design, &measured, drive)?;
             let title = format!("driven by the {} recorded in {}", drive.name(), path.display());
@@ -177,10 +176,9 @@ fn compare(
     arguments: &RigArguments,
     study: &Study,
     levels: [Option<f64>; 3],
-    proof_load_n: f64,
+    equipment: &Equipment,
 ) -> Result<Ending> {
-    let instruments = arguments.instruments.instruments()?;
-    let found = rig::compare(study, proof_load_n, levels, &instruments)?;
+    let found = rig::compare(study, equipment, levels)?;
     if let Some(directory) = &arguments.figures {
         write_figures(directory, &rig_mode_figures(&found))?;
     }
@@ -194,17 +192,23 @@ fn compare(
     done(&text)
 }
 
-fn plan(arguments: &RigArguments, study: &Study, runs: usize, proof_load_n: f64) -> Result<Ending> {
-    let starts_k = arguments
-        .starts
-        .split(',')
-        .map(|text| option("--starts", text.trim(), Quantity::Temperature))
-        .collect::<Result<Vec<f64>>>()?;
+fn plan(
+    arguments: &RigArguments,
+    study: &Study,
+    runs: usize,
+    equipment: Equipment,
+) -> Result<Ending> {
+    let starts_k = match &arguments.starts {
+        Some(starts) => starts
+            .split(',')
+            .map(|text| option("--starts", text.trim(), Quantity::Temperature))
+            .collect::<Result<Vec<f64>>>()?,
+        None => vec![study.design.get(Parameter::InitialTemperature)],
+    };
     if starts_k.len() > 8 {
         return Err(Error::argument("--starts: at most eight temperatures can be planned with"));
     }
-    let instruments = arguments.instruments.instruments()?;
-    let options = PlanOptions { runs, proof_load_n, starts_k, instruments };
+    let options = PlanOptions { runs, starts_k, equipment };
     let found = rig::plan(study, &options)?;
     if arguments.json {
         return done(&as_json(&found)?);

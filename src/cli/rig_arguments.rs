@@ -3,7 +3,8 @@
 use super::arguments::StudyArguments;
 use crate::descent::driven::Drive;
 use crate::error::{Diagnostic, Error, Result};
-use crate::findings::rig::Instruments;
+use crate::findings::rig::{Equipment, Stated};
+use crate::physics::Design;
 use crate::units::{self, Quantity};
 use clap::error::ErrorKind;
 use clap::{Args, Command, ValueEnum};
@@ -71,12 +72,12 @@ pub(super) struct RigArguments {
           value_parser = clap::value_parser!(u8).range(1..=4),
           conflicts_with_all = ["force", "speed", "power"])]
     pub plan: Option<u8>,
-    /// Load that no planned or compared run may exceed
-    #[arg(long, value_name = "FORCE", default_value = "9000 lbf")]
-    pub proof_load: String,
-    /// Temperatures that a planned run can be started at, separated by commas
-    #[arg(long, value_name = "TEMPERATURES", default_value = "20 °F,60 °F,100 °F")]
-    pub starts: String,
+    /// Load that no planned or compared run may exceed [default: 1.5 times the payload's weight]
+    #[arg(long, value_name = "FORCE")]
+    pub proof_load: Option<String>,
+    /// Temperatures that a planned run can be started at, separated by commas [default: the study's initial temperature]
+    #[arg(long, value_name = "TEMPERATURES")]
+    pub starts: Option<String>,
     #[command(flatten)]
     pub instruments: InstrumentArguments,
     /// Write the course of the run to a Parquet file
@@ -121,66 +122,61 @@ impl RigArguments {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Instruments, for --compare and --plan")]
 pub(super) struct InstrumentArguments {
-    /// Time between readings
-    #[arg(long, value_name = "TIME", default_value = "1 s")]
-    pub every: String,
-    /// Random error of a force reading, standard deviation
-    #[arg(long, value_name = "FORCE", default_value = "50 lbf")]
-    pub force_error: String,
-    /// Systematic error of the load cell, as a share
-    #[arg(long, value_name = "SHARE", default_value = "1 %")]
-    pub force_gain: String,
-    /// Random error of a speed reading, standard deviation
-    #[arg(long, value_name = "SPEED", default_value = "0.05 ft/s")]
-    pub speed_error: String,
-    /// Systematic error of the speedometer, as a share
-    #[arg(long, value_name = "SHARE", default_value = "1 %")]
-    pub speed_gain: String,
-    /// Random error of a temperature reading, standard deviation
-    #[arg(long, value_name = "TEMPERATURE", default_value = "2 °F")]
-    pub temperature_error: String,
-    /// Systematic error of the thermometers
-    #[arg(long, value_name = "TEMPERATURE", default_value = "2 °F")]
-    pub temperature_offset: String,
-    /// Nodes that have a thermometer
-    #[arg(
-        long,
-        value_enum,
-        value_delimiter = ',',
-        value_name = "NODES",
-        default_value = "fluid,housing"
-    )]
+    /// Time between readings [default: 1 s]
+    #[arg(long, value_name = "TIME")]
+    pub every: Option<String>,
+    /// Random error of a force reading, standard deviation [default: 1/120 of the payload's weight]
+    #[arg(long, value_name = "FORCE")]
+    pub force_error: Option<String>,
+    /// Systematic error of the load cell, as a share [default: 1 %]
+    #[arg(long, value_name = "SHARE")]
+    pub force_gain: Option<String>,
+    /// Random error of a speed reading, standard deviation [default: 2 % of the flight's mean speed]
+    #[arg(long, value_name = "SPEED")]
+    pub speed_error: Option<String>,
+    /// Systematic error of the speedometer, as a share [default: 1 %]
+    #[arg(long, value_name = "SHARE")]
+    pub speed_gain: Option<String>,
+    /// Random error of a temperature reading, standard deviation [default: 2 °F]
+    #[arg(long, value_name = "TEMPERATURE")]
+    pub temperature_error: Option<String>,
+    /// Systematic error of each thermometer [default: 2 °F]
+    #[arg(long, value_name = "TEMPERATURE")]
+    pub temperature_offset: Option<String>,
+    /// Nodes that have a thermometer [default: fluid,housing]
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "NODES")]
     pub thermometers: Vec<Thermometer>,
 }
 
-impl InstrumentArguments {
-    /// The instruments that are meant.
+impl RigArguments {
+    /// Proof load and instruments for the tests of a design: what is stated, and the rest assumed.
     ///
     /// # Errors
-    /// A value without sense, at its option.
-    pub fn instruments(&self) -> Result<Instruments> {
-        let difference = Quantity::TemperatureDifference;
-        let has = |node| self.thermometers.contains(&node);
-        let found = Instruments {
-            every_s: option("--every", &self.every, Quantity::Time)?,
-            force_noise_n: option("--force-error", &self.force_error, Quantity::Force)?,
-            force_gain: option("--force-gain", &self.force_gain, Quantity::Number)?,
-            speed_noise_m_per_s: option("--speed-error", &self.speed_error, Quantity::Speed)?,
-            speed_gain: option("--speed-gain", &self.speed_gain, Quantity::Number)?,
-            temperature_noise_k: option(
-                "--temperature-error",
-                &self.temperature_error,
-                difference,
-            )?,
-            temperature_offset_k: option(
-                "--temperature-offset",
-                &self.temperature_offset,
-                difference,
-            )?,
-            thermometers: [Thermometer::Fluid, Thermometer::Rotor, Thermometer::Housing].map(has),
+    /// A value without sense, at its option; a flight that cannot be computed.
+    pub fn equipment(&self, design: &Design) -> Result<Equipment> {
+        let given = |name: &str, text: &Option<String>, quantity| {
+            text.as_deref().map(|text| option(name, text, quantity)).transpose()
         };
-        found.validate()?;
-        Ok(found)
+        let own = &self.instruments;
+        let difference = Quantity::TemperatureDifference;
+        let has = |node| own.thermometers.contains(&node);
+        let nodes = [Thermometer::Fluid, Thermometer::Rotor, Thermometer::Housing];
+        let stated = Stated {
+            proof_load_n: given("--proof-load", &self.proof_load, Quantity::Force)?,
+            every_s: given("--every", &own.every, Quantity::Time)?,
+            force_noise_n: given("--force-error", &own.force_error, Quantity::Force)?,
+            force_gain: given("--force-gain", &own.force_gain, Quantity::Number)?,
+            speed_noise_m_per_s: given("--speed-error", &own.speed_error, Quantity::Speed)?,
+            speed_gain: given("--speed-gain", &own.speed_gain, Quantity::Number)?,
+            temperature_noise_k: given("--temperature-error", &own.temperature_error, difference)?,
+            temperature_offset_k: given(
+                "--temperature-offset",
+                &own.temperature_offset,
+                difference,
+            )?,
+            thermometers: (!own.thermometers.is_empty()).then(|| nodes.map(has)),
+        };
+        Equipment::stated(design, &stated)
     }
 }
 

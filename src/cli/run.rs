@@ -306,7 +306,7 @@ impl Run<'_> {
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |t| t.as_secs());
         let provenance = serde_json::json!({
             "version": env!("CARGO_PKG_VERSION"),
-            "command": std::env::args().collect::<Vec<_>>(),
+            "command": std::env::args_os().map(|a| a.to_string_lossy().into_owned()).collect::<Vec<_>>(),
             "finished_unix_s": since_1970,
             "host": std::fs::read_to_string("/proc/sys/kernel/hostname").ok().map(|h| h.trim().to_owned()),
             "architecture": std::env::consts::ARCH,

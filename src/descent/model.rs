@@ -1,25 +1,40 @@
-//! Which equations of motion a descent follows.
+//! Which equations of motion and of heat a descent follows.
 
-/// A model of the motion.
+/// A model of the motion and of the heat.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub enum Model {
-    /// Both bodies accelerate: paper (13), (14).
+    /// Both bodies accelerate: paper (13), (14); the heat in three nodes: paper (16), (17).
     #[default]
     Dynamic,
-    /// The brake's torque balances the line's pull at every moment: paper (15).
+    /// The brake's torque balances the line's pull at every moment: paper (15); three nodes.
     QuasiSteady,
+    /// As [`Model::Dynamic`], with temperature over the radius and across the film (see [`crate::physics::film`]).
+    DetailedDynamic,
+    /// As [`Model::QuasiSteady`], with temperature over the radius and across the film.
+    DetailedQuasiSteady,
 }
 
 impl Model {
-    /// Both models.
-    pub const ALL: [Model; 2] = [Model::Dynamic, Model::QuasiSteady];
+    /// All models.
+    pub const ALL: [Model; 4] =
+        [Model::Dynamic, Model::QuasiSteady, Model::DetailedDynamic, Model::DetailedQuasiSteady];
+
+    /// Those with the heat in three nodes.
+    pub const THREE_NODES: [Model; 2] = [Model::Dynamic, Model::QuasiSteady];
 
     /// The name in study files.
     pub fn name(self) -> &'static str {
         match self {
             Model::Dynamic => "dynamic",
             Model::QuasiSteady => "quasi-steady",
+            Model::DetailedDynamic => "detailed-dynamic",
+            Model::DetailedQuasiSteady => "detailed-quasi-steady",
         }
+    }
+
+    /// Whether temperature is resolved over the radius and across the film.
+    pub fn is_detailed(self) -> bool {
+        matches!(self, Model::DetailedDynamic | Model::DetailedQuasiSteady)
     }
 
     /// The model of a name.

@@ -50,6 +50,11 @@ pub(super) fn derivatives(
         let factor = &outcomes.factors[scores.factor];
         let Some(input) = factor.columns.first().map(|&j| &study.inputs[j]) else { continue };
         let quantity = input.target.parameter.info().quantity;
+        // Parameters of several kinds have no step in common.
+        let kind = |&j: &usize| study.inputs[j].target.parameter == input.target.parameter;
+        if !factor.columns.iter().all(kind) {
+            continue;
+        }
         let (step, step_text) = step_of(input.marginal.law(), quantity, scores.parameter);
         let confirmation = outcomes.differences.iter().find(|difference| {
             difference.factor == scores.factor && difference.parameter == scores.parameter

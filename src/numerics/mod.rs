@@ -3,6 +3,7 @@
 pub mod columns;
 pub mod dual;
 pub mod elementary;
+pub mod gauss_lobatto;
 pub mod interval;
 pub mod lanes;
 pub mod real;

@@ -3,6 +3,7 @@
 use super::balloon::Balloon;
 use super::brake::Brake;
 use super::design::Design;
+use super::film::Film;
 use super::fluid::Fluid;
 use super::parameters::Parameter;
 use super::payload::Payload;
@@ -23,6 +24,8 @@ pub struct Coefficients<R> {
     pub payload: Payload<R>,
     /// The tow balloon.
     pub balloon: Balloon<R>,
+    /// The brake in detail, which the detailed models use in place of two of the three nodes.
+    pub film: Film<R>,
     /// Temperature of all nodes at release `T0`, K.
     pub initial_temperature_k: R,
 }
@@ -38,6 +41,7 @@ impl<R: Real> Coefficients<R> {
             thermal: Thermal::new(design),
             payload: Payload::new(design),
             balloon: Balloon::new(design),
+            film: Film::new(design),
             initial_temperature_k: design.get(Parameter::InitialTemperature),
         }
     }
@@ -87,6 +91,10 @@ fields! {
     payload: Payload { weight_n, extraction_n_per_m, } []
     balloon: Balloon {
         moving_mass_kg, net_lift_n, drag_factor_kg_per_m, rise_speed_m_per_s,
+    } []
+    film: Film {
+        middle_radius_m, half_width_m, conduction_per_s, cross_time_s_per_m, spreading_per_s,
+        expansion_per_k,
     } []
 }
 

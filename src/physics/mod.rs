@@ -7,12 +7,14 @@ pub mod balloon;
 pub mod brake;
 pub mod coefficients;
 pub mod design;
+pub mod film;
 pub mod fluid;
 pub mod motion;
 pub mod parameters;
 pub mod payload;
 pub mod quasi_steady;
 pub mod reel;
+pub mod space;
 pub mod thermal;
 
 pub use coefficients::{Coefficients, FIELD_COUNT};

@@ -42,6 +42,10 @@ pub enum Parameter {
     ThermalAirConductance,
     ThermalAirTemperature,
     InitialTemperature,
+    FluidConductivity,
+    FluidExpansion,
+    MetalConductivity,
+    MetalHeatCapacity,
 }
 
 /// What is known of a parameter before anybody chooses its value.
@@ -72,7 +76,7 @@ pub struct ParameterInfo {
 }
 
 /// Number of parameters.
-pub const PARAMETER_COUNT: usize = 32;
+pub const PARAMETER_COUNT: usize = 36;
 
 const IN: f64 = 0.0254;
 const FT: f64 = 0.3048;
@@ -169,6 +173,16 @@ table! {
         0.0, 2000.0, true, "temperature of the air", "assumed";
     InitialTemperature, "initial.temperature", "T0", Temperature, SIXTY_FAHRENHEIT, "60 °F", 0.0,
         2000.0, true, "temperature of fluid, rotors and housing at release", "paper";
+    FluidConductivity, "fluid.conductivity", "k_f", Conductivity, 0.16, "0.16 W/m/K", 0.0, INF,
+        true, "thermal conductivity of the fluid (detailed models)", "dimethyl silicone data";
+    FluidExpansion, "fluid.expansion", "α", Expansion, 0.0, "0 %/K", 0.0, 0.1, false,
+        "thermal expansion of the fluid, which thins it beyond the viscosity law (detailed models)",
+        "paper: neglected";
+    MetalConductivity, "metal.conductivity", "k_m", Conductivity, 45.0, "45 W/m/K", 0.0, INF, true,
+        "thermal conductivity of rotors and stators (detailed models)", "assumed: carbon steel";
+    MetalHeatCapacity, "metal.heat_capacity", "c_v", VolumetricHeatCapacity, 3.6e6,
+        "3.6 MJ/m³/K", 0.0, INF, true,
+        "heat capacity by volume of rotors and stators (detailed models)", "assumed: carbon steel";
 }
 
 impl Parameter {

@@ -146,7 +146,12 @@ pub fn calibration_markdown(finding: &CalibrationFinding, figures: &[Figure]) ->
     let runs = finding.runs.iter().map(|run| {
         [
             short(&run.name).to_owned(),
-            if run.held_out { "held out".to_owned() } else { "calibrated with".to_owned() },
+            match (run.held_out, run.synthetic) {
+                (true, false) => "held out".to_owned(),
+                (true, true) => "held out; synthetic".to_owned(),
+                (false, false) => "calibrated with".to_owned(),
+                (false, true) => "calibrated with; synthetic".to_owned(),
+            },
             run.drive.to_owned(),
             run.predicted.join(", "),
             run.moments.to_string(),
@@ -190,6 +195,22 @@ pub fn calibration_markdown(finding: &CalibrationFinding, figures: &[Figure]) ->
         );
         text += &markdown_table(NEXT_HEADER, next_rows(finding));
     }
+    text += "\n## Do the data agree?\n\nEach run against what the others expect of it (leave one out), the posterior against the \
+             card, and each channel's errors against independence (Ljung and Box). Of calibrations in which all is as it is \
+             said to be about one in ten is doubted.\n\n";
+    let tests = finding.consistency.iter().map(|test| {
+        [
+            test.channel.map_or(short(&test.of).to_owned(), |channel| {
+                format!("{}, {channel}", short(&test.of))
+            }),
+            test.against.to_owned(),
+            format!("{:.1} ({})", test.test.statistic, test.test.degrees),
+            number(test.test.p, 2),
+            number(test.least, 2),
+        ]
+    });
+    let header = ["", "against", "chi-squared (degrees of freedom)", "p", "doubted below"];
+    text += &markdown_table(header, tests);
     text += &format!("\n## Sampling\n\n{}", sampling(finding));
     let reproduction = &finding.reproduction;
     text += &format!(
@@ -240,27 +261,48 @@ fn figures_named(figures: &[Figure], wanted: impl Fn(&str) -> bool) -> String {
 
 /// What a card says of itself: comments at its head.
 fn head(finding: &CalibrationFinding, what: &str) -> String {
-    let mut text = format!("# {what}\n#\n# Made by: {}\n", finding.reproduction.command);
-    text += &format!(
-        "# reeldown {}, seed {}, digest of the resolved study {}\n",
-        finding.reproduction.version, finding.reproduction.seed, finding.reproduction.study_digest
-    );
-    for (name, digest) in &finding.reproduction.files {
-        text += &format!("# prior: {name}, SHA-256 {digest}\n");
+    let reproduction = &finding.reproduction;
+    let mut lines = vec![
+        what.to_owned(),
+        String::new(),
+        format!("Made by: {}", reproduction.command),
+        format!(
+            "reeldown {}, seed {}, digest of the resolved study {}",
+            reproduction.version, reproduction.seed, reproduction.study_digest
+        ),
+    ];
+    for (name, digest) in &reproduction.files {
+        lines.push(format!("prior: {name}, SHA-256 {digest}"));
     }
     for run in finding.runs.iter().filter(|run| !run.held_out) {
-        text += &format!("# data: {}, SHA-256 {}\n", run.name, run.sha256);
+        let made_up = if run.synthetic { " (synthetic: made up, not measured)" } else { "" };
+        lines.push(format!("data: {}{made_up}, SHA-256 {}", run.name, run.sha256));
     }
-    text += "#\n# It holds the brake and its fluid only: name it after the card that it was made from, whose other laws stay.\n";
-    text + &format!("#   card = [\"<the prior card>\", \"{}\"]\n", "<this card>")
+    lines.extend(finding.doubts.iter().map(|doubt| format!("DOUBTED: {doubt}")));
+    lines.push(String::new());
+    let use_it = "It holds the brake and its fluid only: name it after the card that it was made from, whose other laws stay.";
+    lines.push(use_it.to_owned());
+    lines.push("  card = [\"<the prior card>\", \"<this card>\"]".to_owned());
+    // A comment ends with its line: a line end in a name would begin a statement.
+    let comment = |line: String| -> String {
+        let line: String = line.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        format!("# {line}").trim_end().to_owned() + "\n"
+    };
+    lines.into_iter().map(comment).collect()
 }
 
 fn source(finding: &CalibrationFinding) -> String {
     format!(
-        "posterior of {} rig runs, reeldown calibrate {}",
+        "posterior of {} {}rig runs, reeldown calibrate {}",
         calibrated(finding),
+        if made_up(finding) { "synthetic " } else { "" },
         finding.reproduction.version
     )
+}
+
+/// Whether any run that was calibrated with was made up.
+fn made_up(finding: &CalibrationFinding) -> bool {
+    finding.runs.iter().any(|run| run.synthetic && !run.held_out)
 }
 
 /// What makes a card a calibrated one: `run` then tells what it changed.
@@ -269,7 +311,10 @@ fn parents(finding: &CalibrationFinding) -> String {
         .runs
         .iter()
         .filter(|run| !run.held_out)
-        .map(|run| format!("{} (SHA-256 {})", short(&run.name), run.sha256))
+        .map(|run| {
+            let made_up = if run.synthetic { "synthetic, " } else { "" };
+            format!("{} ({made_up}SHA-256 {})", short(&run.name), run.sha256)
+        })
         .collect();
     format!("calibrated_from = {}\n", quoted(&runs.join(", ")))
 }
@@ -337,7 +382,7 @@ fn law_text(law: &LawFinding, source: &str) -> String {
     )
 }
 
-/// A TOML string.
+/// A TOML string, whatever is in it.
 fn quoted(text: &str) -> String {
-    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
+    toml::Value::from(text).to_string()
 }

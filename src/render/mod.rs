@@ -34,7 +34,7 @@ pub use figures::{
 pub use html::html;
 pub use json::json;
 pub use markdown::markdown;
-pub use paper::{PaperPage, paper_page};
+pub use paper::{PaperPage, paper_count, paper_page};
 pub use png::png;
 pub use rig::{rig_comparison_terminal, rig_plan_terminal};
 pub use sweep::{sweep_markdown, sweep_terminal};

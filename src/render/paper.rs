@@ -2,7 +2,7 @@
 
 use super::figures::{Figure, paper_figures, rig_mode_figures, starting_temperature_figure};
 use super::figures_of_speech::value;
-use crate::findings::paper::{PaperFinding, Statement};
+use crate::findings::paper::{PaperFinding, Statement, Verdict};
 use crate::units::Quantity;
 
 /// The page and the figures beside it.
@@ -16,7 +16,33 @@ pub struct PaperPage {
 
 /// What a statement comes to.
 fn verdict(statement: &Statement) -> &'static str {
-    if statement.agrees { "pass" } else { "**FAIL**" }
+    match statement.verdict {
+        Verdict::Pass => "pass",
+        Verdict::Fail => "**FAIL**",
+        Verdict::Undecided => "undecided",
+        Verdict::NoTest => "no test",
+    }
+}
+
+/// How many statements came to what.
+pub fn paper_count(statements: &[Statement]) -> String {
+    let count = |verdict| statements.iter().filter(|s| s.verdict == verdict).count();
+    let fail = count(Verdict::Fail);
+    let mut text = format!(
+        "{} of the paper's {} statements agree, {fail} {}",
+        count(Verdict::Pass),
+        statements.len(),
+        if fail == 1 { "does not" } else { "do not" },
+    );
+    for (count, what) in [
+        (count(Verdict::Undecided), "undecided"),
+        (count(Verdict::NoTest), "no test (nothing else could have come out)"),
+    ] {
+        if count > 0 {
+            text += &format!(", {count} {} {what}", if count == 1 { "is" } else { "are" });
+        }
+    }
+    text
 }
 
 /// The page of a finding; `design` says what was computed, `command` makes it again.
@@ -27,16 +53,13 @@ pub fn paper_page(finding: &PaperFinding, design: &str, command: &str) -> PaperP
         .chain(rig_mode_figures(&finding.modes))
         .collect();
     let statements = &finding.statements;
-    let passed = statements.iter().filter(|s| s.agrees).count();
     let mut text = format!(
         "# The paper's figures, drawn again\n\n\
          G. Jumper, *Improved Viscous Brake Design Using Simulation*, describes a brake that reels a payload \
          down 500 ft below a balloon, and shows the course of a run in Figures 4 to 10 and, in words, that of a \
          test on the ground in three modes. Does this program show the same?\n\n\
-         **{passed} of {} statements agree; {} {}.**\n\n",
-        statements.len(),
-        statements.len() - passed,
-        if statements.len() - passed == 1 { "does not" } else { "do not" },
+         **{}.**\n\n",
+        paper_count(statements)
     );
     text +=
         "| where | the paper says (in our words) | here | verdict |\n| --- | --- | --- | --- |\n";
@@ -49,12 +72,12 @@ pub fn paper_page(finding: &PaperFinding, design: &str, command: &str) -> PaperP
             verdict(statement)
         );
     }
-    for statement in statements.iter().filter(|s| !s.agrees) {
+    for statement in statements.iter().filter(|s| s.verdict != Verdict::Pass) {
         let remark = statement.remark.as_deref().unwrap_or("no reason is known");
         text += &format!("\n**{}, {}:** {remark}.\n", statement.place, statement.says);
     }
     text += "\nPassed with a reservation:\n\n";
-    for statement in statements.iter().filter(|s| s.agrees) {
+    for statement in statements.iter().filter(|s| s.verdict == Verdict::Pass) {
         if let Some(remark) = &statement.remark {
             text += &format!("- **{}**, {}: {remark}.\n", statement.place, statement.says);
         }

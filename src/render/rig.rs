@@ -47,6 +47,14 @@ fn instruments(i: &Instruments) -> String {
     )
 }
 
+/// What of load and instruments nobody stated.
+fn assumed(assumed: &[String]) -> String {
+    match assumed {
+        [] => String::new(),
+        some => format!("Assumed, as no option states it: {}.\n", some.join("; ")),
+    }
+}
+
 /// Rows of what remains of each parameter's standard deviation, one column a case.
 fn remaining_rows(parameters: &[(String, usize)], cases: &[&[f64]]) -> Vec<Vec<String>> {
     let named = parameters.iter().enumerate().map(|(k, (name, members))| {
@@ -124,7 +132,7 @@ pub fn rig_comparison_terminal(comparison: &Comparison) -> String {
         table(&header, 1..header.len(), remaining_rows(&comparison.parameters, &cases), None)
     );
     text += &format!("Instruments: {}.\n", instruments(&comparison.instruments));
-    text
+    text + &assumed(&comparison.assumed)
 }
 
 fn run_name(candidate: &Candidate) -> String {
@@ -159,6 +167,35 @@ fn band(band: &Band) -> [String; 3] {
         share(band.upper - band.lower),
         share(band.standard_deviation),
     ]
+}
+
+/// What a truck or a crew may not be able to do of what is planned.
+fn practice(plan: &PlanFinding) -> String {
+    let mut text = String::new();
+    let width = |c: &Combination| share(c.band.upper - c.band.lower);
+    let simpler: Vec<String> = plan
+        .without_power
+        .iter()
+        .zip(&plan.best)
+        .filter_map(|(simple, best)| Some((simple, best.first()?)))
+        .filter(|(simple, best)| best.runs != simple.runs)
+        .map(|(simple, best)| {
+            format!("{} ({} wide, not {})", runs_name(plan, simple), width(simple), width(best))
+        })
+        .collect();
+    if !simpler.is_empty() {
+        text += &format!(
+            "At constant power the driver has to change force and speed all the time. The best plans without it: {}.\n",
+            simpler.join("; ")
+        );
+    }
+    if plan.candidates.iter().any(|run| (run.start_k - plan.start_k).abs() > 0.1) {
+        text += &format!(
+            "Runs that do not start at {} need the brake cooled or heated to that temperature, all of it.\n",
+            value(plan.start_k, Quantity::Temperature)
+        );
+    }
+    text
 }
 
 /// Where wide tables wrap.
@@ -227,6 +264,8 @@ pub fn rig_plan_terminal(plan: &PlanFinding) -> String {
     for name in &plan.left_out {
         text += &format!("left out of P: {name}, whose design point was not found\n");
     }
+    text += &practice(plan);
+    text += &assumed(&plan.assumed);
     text += &format!(
         "Instruments: {}.\nThe runs on the rig are by the quasi-steady model.\n\
          Linear and normal about the card's medians; the model itself is taken as right. The order is that of \

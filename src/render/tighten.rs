@@ -175,7 +175,8 @@ fn lines(finding: &TightenFinding) -> Vec<String> {
     lines.extend(finding.proof.as_ref().map(|proof| proof.statement.clone()));
     lines.push(format!(
         "Searched on {} samples with common random numbers ({} plans, {} descents in all). A spread can be bought \
-         unless its card says cost = \"none\".",
+         unless its card says cost = \"none\"; those of the weather, known on the day, and of the model's own error only if \
+         the card gives them a cost.",
         count(finding.samples),
         count(finding.evaluations),
         count(finding.descents)

@@ -6,7 +6,6 @@
 //! pages; these are of whole row groups, in the footer's own entries, which other readers pass over.
 
 use serde::{Deserialize, Serialize};
-use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::Range;
 
@@ -72,7 +71,7 @@ impl Checksums {
     ///
     /// # Errors
     /// If the footer is damaged, or the file cannot be read; the reason in a few words.
-    pub(super) fn of(file: &mut File) -> Result<Option<Self>, String> {
+    pub(super) fn of(file: &mut (impl Read + Seek)) -> Result<Option<Self>, String> {
         let damaged = || "its footer is damaged: it does not match its checksum".to_owned();
         let Some((start, mut footer)) = read_footer(file).map_err(|why| why.to_string())? else {
             return Ok(None);
@@ -108,7 +107,11 @@ impl Checksums {
     ///
     /// # Errors
     /// The first one whose bytes do not match, with its rows; or why the file cannot be read.
-    pub(super) fn verify(&self, file: &mut File, rows: Range<u64>) -> Result<(), String> {
+    pub(super) fn verify(
+        &self,
+        file: &mut (impl Read + Seek),
+        rows: Range<u64>,
+    ) -> Result<(), String> {
         let (mut first, mut start) = (0, MAGIC.len() as u64);
         for (k, group) in self.groups.iter().enumerate() {
             let held = first..group.rows.saturating_add(first);
@@ -132,7 +135,7 @@ impl Checksums {
 ///
 /// # Errors
 /// If it is damaged or cannot be read; the reason in a few words.
-pub(super) fn verify_if_ours(file: &mut File) -> Result<(), String> {
+pub(super) fn verify_if_ours(file: &mut (impl Read + Seek)) -> Result<(), String> {
     if let Some(sums) = Checksums::of(file)? {
         sums.verify(file, 0..u64::MAX)?;
     }
@@ -140,7 +143,7 @@ pub(super) fn verify_if_ours(file: &mut File) -> Result<(), String> {
 }
 
 /// The SHA-256 of some bytes of a file.
-pub(super) fn digest(file: &mut File, bytes: Range<u64>) -> io::Result<String> {
+pub(super) fn digest(file: &mut (impl Read + Seek), bytes: Range<u64>) -> io::Result<String> {
     use sha2::Digest;
     file.seek(SeekFrom::Start(bytes.start))?;
     let mut left = bytes.end.saturating_sub(bytes.start);
@@ -156,7 +159,7 @@ pub(super) fn digest(file: &mut File, bytes: Range<u64>) -> io::Result<String> {
 }
 
 /// Offset and bytes of a Parquet file's footer, without its length; `None` if the file does not end like one.
-fn read_footer(file: &mut File) -> io::Result<Option<(u64, Vec<u8>)>> {
+fn read_footer(file: &mut (impl Read + Seek)) -> io::Result<Option<(u64, Vec<u8>)>> {
     let size = file.seek(SeekFrom::End(0))?;
     let mut tail = [0; 8];
     let Some(end) = size.checked_sub(8) else { return Ok(None) };
@@ -167,6 +170,6 @@ fn read_footer(file: &mut File) -> io::Result<Option<(u64, Vec<u8>)>> {
     let Some(start) = end.checked_sub(length).filter(|_| magic == MAGIC) else { return Ok(None) };
     file.seek(SeekFrom::Start(start))?;
     let mut footer = Vec::new();
-    file.take(length).read_to_end(&mut footer)?;
+    file.by_ref().take(length).read_to_end(&mut footer)?;
     Ok(Some((start, footer)))
 }

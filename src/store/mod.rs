@@ -5,15 +5,15 @@
 mod atomic;
 mod checksums;
 mod column_file;
-mod damage;
 mod directory;
 mod footer;
 mod journal;
 mod outcomes_file;
 mod parquet;
+mod reader;
 
 pub use atomic::{AtomicFile, refuse_obstacle, write_bytes, write_text};
-pub use column_file::{NumberColumns, PARQUET, read_number_column, read_number_columns};
+pub use column_file::{PARQUET, read_number_column};
 pub use directory::{Contents, ResultDirectory, refuse_unfinished, verify_listed};
 pub use journal::UnfinishedTable;
 pub use outcomes_file::{OutcomesReader, OutcomesWriter, Parentage};

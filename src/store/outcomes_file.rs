@@ -1,16 +1,17 @@
 //! `outcomes.parquet`: one row a sample, with the names of its parents in the footer.
 
 use super::checksums::{Checksums, DIGEST_KEY, GROUPS_KEY};
-use super::damage;
 use super::parquet::{TableWriter, frame};
+use super::reader::{Cell, ParquetFile};
 use crate::descent::{Fault, OutcomeQuantity};
 use crate::error::{Error, Result};
 use crate::outcomes::OutcomeTable;
 use crate::study::Study;
-use polars::prelude::{Column, DataFrame, Float64Chunked, IntoColumn, ParquetReader, SerReader};
+use polars::prelude::{Column, DataFrame, Float64Chunked, IntoColumn};
 use std::collections::BTreeMap;
-use std::fs::{self, File};
+use std::fs::File;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Column of the sample's index.
 const SAMPLE: &str = "sample";
@@ -169,7 +170,7 @@ impl OutcomesReader {
     /// If it is not there, not Parquet, damaged, or not written by this program.
     pub fn open(path: &Path) -> Result<Self> {
         // A pipe or a device could keep a reader waiting for ever.
-        if fs::metadata(path).is_ok_and(|there| !there.is_file()) {
+        if std::fs::metadata(path).is_ok_and(|there| !there.is_file()) {
             return Err(unusable(path, "it is not a regular file"));
         }
         let mut file = File::open(path).map_err(|reason| unusable(path, reason))?;
@@ -177,23 +178,19 @@ impl OutcomesReader {
         let none = "it is not a table of reeldown's with checksums: it is another file, is cut off, or was written \
                     by an earlier version";
         let checksums = checksums.ok_or_else(|| unusable(path, none))?;
-        let metadata = damage::read(|| ParquetReader::new(file).get_metadata().cloned())
-            .map_err(|reason| unusable(path, reason))?;
-        let rows = metadata.num_rows as u64;
-        let entries = metadata.key_value_metadata().as_ref().map_or(&[][..], |list| list);
-        let parentage: BTreeMap<String, String> = entries
-            .iter()
-            .filter_map(|entry| {
-                let own = entry.key != GROUPS_KEY && entry.key != DIGEST_KEY;
-                let key = entry.key.strip_prefix(PREFIX).filter(|_| own)?;
-                Some((key.to_owned(), entry.value.clone()?))
-            })
-            .collect();
+        let file = ParquetFile::open(file).map_err(|reason| unusable(path, reason))?;
+        let entry = |(key, value): &(String, String)| {
+            let own = key != GROUPS_KEY && key != DIGEST_KEY;
+            let key = key.strip_prefix(PREFIX).filter(|_| own)?;
+            Some((key.to_owned(), value.clone()))
+        };
+        let parentage: BTreeMap<String, String> =
+            file.metadata().iter().filter_map(entry).collect();
         if parentage.is_empty() {
             return Err(unusable(path, "its footer has no entry of reeldown's"));
         }
-        let parentage = Parentage(parentage);
-        Ok(OutcomesReader { path: path.to_owned(), rows, parentage, checksums })
+        let (path, rows) = (path.to_owned(), file.rows());
+        Ok(OutcomesReader { path, rows, parentage: Parentage(parentage), checksums })
     }
 
     /// Number of samples in the file.
@@ -214,19 +211,26 @@ impl OutcomesReader {
     pub fn read(&self, study: &Study, first: u64, rows: usize) -> Result<OutcomeTable> {
         let fail = |reason: String| unusable(&self.path, reason);
         let mut file = File::open(&self.path).map_err(|reason| unusable(&self.path, reason))?;
-        self.checksums.verify(&mut file, first..first + rows as u64).map_err(fail)?;
-        let slice = Some((first as usize, rows));
-        let frame =
-            damage::read(|| ParquetReader::new(file).with_slice(slice).finish()).map_err(fail)?;
-        if frame.height() != rows {
+        self.checksums.verify(&mut file, first..first.saturating_add(rows as u64)).map_err(fail)?;
+        let mut file = ParquetFile::open(file).map_err(fail)?;
+        if first.checked_add(rows as u64).is_none_or(|end| end > file.rows()) {
             return Err(fail(format!("it has no samples {first} to {}", first + rows as u64 - 1)));
+        }
+        fn cells<T: Cell>(
+            file: &mut ParquetFile<File>,
+            name: &str,
+            first: u64,
+            rows: usize,
+        ) -> std::result::Result<Vec<Option<T>>, String> {
+            let place = file.place(name).ok_or_else(|| format!("it lacks the column `{name}`"))?;
+            let cells = file.read(place, first, rows as u64);
+            cells.map_err(|reason| format!("column `{name}`: {reason}"))
         }
         let layout = Layout::new(study);
         let mut table = OutcomeTable::new(first, rows, study.inputs.len());
-        let numbers = |name: &str, target: &mut [f64]| -> Result<()> {
-            let column = frame.column(name).and_then(|column| column.f64().cloned());
-            let column = column.map_err(|reason| fail(reason.to_string()))?;
-            for (value, read) in target.iter_mut().zip(column.iter()) {
+        let mut numbers = |name: &str, target: &mut [f64]| -> Result<()> {
+            let column = cells::<f64>(&mut file, name, first, rows).map_err(fail)?;
+            for (value, read) in target.iter_mut().zip(column) {
                 *value = read.unwrap_or(f64::NAN);
             }
             Ok(())
@@ -237,17 +241,14 @@ impl OutcomesReader {
         for (j, quantity) in OutcomeQuantity::ALL.iter().enumerate() {
             numbers(&quantity.column(), table.outcomes.column_mut(j))?;
         }
-        let deployed = frame.column(DEPLOYED).and_then(|column| column.bool().cloned());
-        let faults = frame.column(FAULT).and_then(|column| column.str().cloned());
-        let (Ok(deployed), Ok(faults)) = (deployed, faults) else {
-            return Err(fail(format!("it lacks the columns `{DEPLOYED}` and `{FAULT}`")));
-        };
-        for (k, (deployed, fault)) in deployed.iter().zip(faults.iter()).enumerate() {
+        let deployed = cells::<bool>(&mut file, DEPLOYED, first, rows).map_err(fail)?;
+        let faults = cells::<Arc<str>>(&mut file, FAULT, first, rows).map_err(fail)?;
+        for (k, (deployed, fault)) in deployed.into_iter().zip(faults).enumerate() {
             table.deployed[k] = deployed.unwrap_or(false);
             table.faults[k] = match fault {
                 None => None,
                 Some(name) => Some(
-                    Fault::from_name(name).ok_or_else(|| fail(format!("unknown fault {name}")))?,
+                    Fault::from_name(&name).ok_or_else(|| fail(format!("unknown fault {name}")))?,
                 ),
             };
         }

@@ -1,12 +1,14 @@
 //! From the texts of a study and its cards to the [`Study`]: pure, so that it can be fuzzed.
 
-use super::card::{self, Card};
+use super::card;
 use super::document::{self, Node, Value};
 use super::files::{Files, NamedText};
+use super::mistakes::Mistakes;
 use super::overrides::{Destination, Override, in_place_of, put};
 use super::place::Text;
 use super::together::{self, Together};
 use super::values::parameter_path;
+use super::vocabulary::STUDY;
 use super::{
     DrawnTogether, Input, Stated, Study, correlation, epistemic, inputs, pairs, read, sections,
     tighten,
@@ -21,11 +23,11 @@ use std::sync::Arc;
 
 /// Makes the study that a text, its cards and some overrides describe.
 ///
-/// Reads nothing but what `files` gives it. Of several mistakes the first is reported, in the order:
-/// the study's TOML, its keys, design, limits, plans, cards, inputs, correlations.
+/// Reads nothing but what `files` gives it. All mistakes are reported, in the order: the study's keys,
+/// design, limits, plans, cards, inputs, correlations; of each value, input and plan the first.
 ///
 /// # Errors
-/// A [`crate::error::Diagnostic`] for every mistake in a text.
+/// A [`crate::error::Diagnostic`] for a mistake in a text; for several, [`Error::Several`].
 pub fn assemble(study: &NamedText, overrides: &[Override], files: &mut dyn Files) -> Result<Study> {
     assemble_with(study, overrides, files, None)
 }
@@ -41,49 +43,61 @@ fn assemble_with(
     let mut document = document::parse(&text)?;
     let (design_overrides, card_overrides) = apply(overrides, &mut document)?;
     let top = read::table(&document, "title = \"…\"")?;
-    sections::check_top(top)?;
+    let mut mistakes = Mistakes::default();
+    mistakes.keep(read::known_keys(top, "", STUDY));
     let find = |name: &str| top.iter().find(|(key, _)| key.name == name).map(|(_, node)| node);
     let missing = |name: &str, expected: &str| {
         // The whole text would be underlined; its start is enough.
         super::place::Place::new(&text, 0..0)
             .error(format!("the study lacks the key `{name}`"), format!("expected {expected}"))
     };
-    let title_node = find("title").ok_or_else(|| missing("title", "title = \"…\""))?;
-    let title = read::string(title_node, "the study's title")?.trim().to_owned();
-    let model = match find("model") {
-        Some(node) => read::choice(node, "model", &Model::ALL.map(Model::name), Model::from_name)?,
-        None => Model::Dynamic,
-    };
-    let design_entries = match find("design") {
-        Some(node) => sections::design_entries(node)?,
-        None => Vec::new(),
-    };
-    let (design, stated) = sections::design([design_entries, design_overrides])?;
-    let limits = find("limits").map_or(Ok(Vec::new()), sections::limits)?;
-    let requirement = find("requirement").map(sections::requirement).transpose()?;
-    let sampling = sections::sampling(find("sampling"), !limits.is_empty(), requirement)?;
-    let numerics = sections::numerics(find("numerics"))?;
-    let mut sensitivity = sections::sensitivity(find("sensitivity"))?;
-    let reliability = sections::reliability(find("reliability"))?;
-    let trade = tighten::trade(find("trade"))?;
-    let tighten = tighten::tighten(find("tighten"), &design)?;
-    let epistemic = epistemic::epistemic(find("epistemic"))?;
-    if let (Some(node), true) = (find("requirement"), limits.is_empty()) {
+    let title = find("title").ok_or_else(|| missing("title", "title = \"…\"")).and_then(|node| {
+        read::string(node, "the study's title").map(|title| title.trim().to_owned())
+    });
+    let title = mistakes.keep(title);
+    let model = mistakes.keep(find("model").map_or(Ok(Model::Dynamic), |node| {
+        read::choice(node, "model", &Model::ALL.map(Model::name), Model::from_name)
+    }));
+    let entries = find("design").map(|node| sections::design_entries(node, &mut mistakes));
+    let design = sections::design([entries.unwrap_or_default(), design_overrides]);
+    let design = mistakes.keep(design);
+    let limits = mistakes.keep(find("limits").map_or(Ok(Vec::new()), sections::limits));
+    let unlimited = limits.as_ref().is_some_and(Vec::is_empty);
+    let requirement = mistakes.keep(find("requirement").map(sections::requirement).transpose());
+    if let (Some(node), true) = (find("requirement"), unlimited) {
         let expected = "expected at least one limit, such as [limits] time = { max = \"210 s\" }";
-        return Err(node.place.error("a requirement without limits says nothing", expected));
+        let error = node.place.error("a requirement needs at least one limit", expected);
+        mistakes.keep(Err::<(), _>(error));
     }
+    // What a section says of another is not judged where that one is wrong.
+    let sampling = requirement.and_then(|requirement| {
+        mistakes.keep(sections::sampling(find("sampling"), !unlimited, requirement))
+    });
+    let numerics = mistakes.keep(sections::numerics(find("numerics")));
+    let sensitivity = mistakes.keep(sections::sensitivity(find("sensitivity")));
+    let reliability = mistakes.keep(sections::reliability(find("reliability")));
+    let trade = mistakes.keep(tighten::trade(find("trade")));
+    let tighten = design
+        .as_ref()
+        .and_then(|(design, _)| mistakes.keep(tighten::tighten(find("tighten"), design)));
+    let epistemic = mistakes.keep(epistemic::epistemic(find("epistemic")));
     let card_node = find("card")
-        .ok_or_else(|| missing("card", "card = \"…\": the file that says what is uncertain"))?;
+        .ok_or_else(|| missing("card", "card = \"…\": the file that says what is uncertain"));
+    let Some(card_node) = mistakes.keep(card_node) else { return mistakes.none_or(None) };
     let card_texts = match given {
-        Some(texts) => texts.to_vec(),
-        None => card_texts(card_node, overrides, files)?,
+        Some(texts) => Ok(texts.to_vec()),
+        None => card_texts(card_node, overrides, files),
     };
+    let Some(card_texts) = mistakes.keep(card_texts) else { return mistakes.none_or(None) };
+    let before = mistakes.count();
     let mut cards = Vec::new();
     for card in &card_texts {
         let text = Arc::new(Text { origin: card.origin.clone(), text: card.text.clone() });
-        let mut card = card::read_card(&document::parse(&text)?)?;
+        let Some(document) = mistakes.keep(document::parse(&text)) else { continue };
+        let mut card = card::read_card(&document, &mut mistakes);
         let stated = |target| card.statements.iter().any(|statement| statement.target == target);
-        card.together = together::read(&card.joints, &stated, files)?;
+        let together = mistakes.keep(together::read(&card.joints, &stated, files));
+        card.together = together.unwrap_or_default();
         cards.push(card);
     }
     let calibrated = cards.iter().skip(1).position(|card| card.calibrated_from.is_some());
@@ -93,22 +107,79 @@ fn assemble_with(
     // What the cards before it say may not be a study of its own: there is then no prior to tell of.
     let prior = prior_cards
         .and_then(|cards| assemble_with(study, overrides, files, Some(cards)).ok().map(Box::new));
+    let whole = mistakes.count() == before;
     let mut card = card::merge(cards);
     for (statement, path, key) in card_overrides {
         if let Some(target) = parameter_path(&path) {
             card::put(&mut card, target, &statement.path, &key, &statement.value);
         }
     }
-    let inputs = study_inputs(&card, card_node, &design, files)?;
-    check_dimension(&sampling, inputs.len(), find("sampling").unwrap_or(card_node))?;
+    let inputs = match &design {
+        Some((design, _)) => mistakes.keep(inputs::inputs(&card, design, files)),
+        None => None,
+    };
+    // A card that could not be read lacks inputs, of which nothing can then be said.
+    let inputs = inputs.filter(|_| whole).and_then(|inputs| match inputs.is_empty() {
+        false => Some(inputs),
+        true => {
+            let expected = "expected at least one input, such as [initial.temperature]";
+            let problem = "the card defines no uncertain input";
+            mistakes.keep(Err(card_node.place.error(problem, expected)))
+        }
+    });
+    let (
+        Some(title),
+        Some(model),
+        Some((mut design, stated)),
+        Some(limits),
+        Some(requirement),
+        Some(sampling),
+        Some(numerics),
+        Some(mut sensitivity),
+        Some(reliability),
+        Some(trade),
+        Some(tighten),
+        Some(epistemic),
+        Some(inputs),
+    ) = (
+        title,
+        model,
+        design,
+        limits,
+        requirement,
+        sampling,
+        numerics,
+        sensitivity,
+        reliability,
+        trade,
+        tighten,
+        epistemic,
+        inputs,
+    )
+    else {
+        return mistakes.none_or(None);
+    };
+    let place = find("sampling").unwrap_or(card_node);
+    mistakes.keep(check_dimension(&sampling, inputs.len(), place));
     if let Some(node) = find("sensitivity").and_then(|node| read::entry(node, "pairs")) {
-        sensitivity.pairs = pairs::pairs(node, &inputs)?;
+        sensitivity.pairs = mistakes.keep(pairs::pairs(node, &inputs)).unwrap_or_default();
     }
-    let (drawn_together, samples) = drawn_together(&inputs, &card.together)?;
-    let (joint, correlations) = correlation::joint(&inputs, samples, &card.correlations)?;
+    let joint = drawn_together(&inputs, &card.together).and_then(|(drawn_together, samples)| {
+        let (joint, correlations) = correlation::joint(&inputs, samples, &card.correlations)?;
+        Ok((drawn_together, joint, correlations))
+    });
+    let joint = mistakes.keep(joint);
+    let (drawn_together, joint, correlations) = mistakes.none_or(joint)?;
+    let moved =
+        prior.as_ref().map_or(0, |prior| to_the_posterior(&mut design, &inputs, prior, &stated));
     let mut notes = notes(&design, &inputs, &stated);
     notes.extend(card.together.iter().filter_map(unused));
     notes.extend(epistemic::shared_readings(&inputs));
+    if moved > 0 {
+        notes.push(format!(
+            "{moved} calibrated inputs have their posterior means as nominal values: the card before them had others"
+        ));
+    }
     Ok(Study {
         title,
         model,
@@ -135,6 +206,37 @@ fn assemble_with(
         card_texts: card_texts.into_iter().map(|card| (card.origin, card.text)).collect(),
         overrides: overrides.iter().map(|statement| statement.text().to_owned()).collect(),
     })
+}
+
+/// Sets the nominal value of every input whose law a calibration changed to that law's mean, unless the study states
+/// one; how many. The nominal descent is then of the brake that was measured, not of the one that was designed.
+fn to_the_posterior(
+    design: &mut Design<f64>,
+    inputs: &[Input],
+    prior: &Study,
+    stated: &[Stated],
+) -> usize {
+    let kept = |target: Target| {
+        let before = prior.inputs.iter().find(|input| input.target == target);
+        let same = |before: &Input, now: &Input| before.law_canonical == now.law_canonical;
+        let whole = Target::whole(target.parameter);
+        let is_stated = stated.iter().any(|s| s.target == target || s.target == whole);
+        move |now: &Input| is_stated || before.is_some_and(|before| same(before, now))
+    };
+    let mut moved = design.clone();
+    let mut count = 0;
+    for input in inputs {
+        let mean = input.marginal.mean();
+        if mean.is_finite() && !kept(input.target)(input) {
+            moved.set(input.target, mean);
+            count += 1;
+        }
+    }
+    if moved.validate().is_err() {
+        return 0;
+    }
+    *design = moved;
+    count
 }
 
 type CardOverride<'o> = (&'o Override, String, String);
@@ -183,8 +285,7 @@ fn card_texts(
     };
     let mut texts: Vec<NamedText> = Vec::new();
     for node in names {
-        let name =
-            read::string(node, "the name of a card, such as \"../../distributions/habe.toml\"")?;
+        let name = read::string(node, "the name of a card")?;
         let by_option =
             overrides.iter().any(|one| Arc::ptr_eq(&one.path.place.text, &node.place.text));
         let card = files.card(name, by_option).map_err(|reason| {
@@ -199,21 +300,6 @@ fn card_texts(
         texts.push(card);
     }
     Ok(texts)
-}
-
-fn study_inputs(
-    card: &Card,
-    card_node: &Node,
-    design: &Design<f64>,
-    files: &mut dyn Files,
-) -> Result<Vec<Input>> {
-    let mut columns = |card: &str, name: &str, column: &str| files.column(card, name, column);
-    let inputs = inputs::inputs(card, design, &mut columns)?;
-    if inputs.is_empty() {
-        let expected = "expected at least one input, such as [initial.temperature]";
-        return Err(card_node.place.error("the card makes nothing uncertain", expected));
-    }
-    Ok(inputs)
 }
 
 fn check_dimension(plan: &super::SamplingPlan, inputs: usize, node: &Node) -> Result<()> {

@@ -1,6 +1,7 @@
 //! Cards: the inputs that are uncertain, statement by statement.
 
 use super::document::{Key, Node, Table, Value};
+use super::mistakes::Mistakes;
 use super::read;
 use super::together::Together;
 use super::values::{parameter_path, unknown_input};
@@ -30,23 +31,31 @@ pub(super) struct Card {
 }
 
 /// Sorts the entries of a card into inputs and correlations.
-pub(super) fn read_card(document: &Node) -> Result<Card> {
+///
+/// What cannot be sorted is left out and kept among the mistakes.
+pub(super) fn read_card(document: &Node, mistakes: &mut Mistakes) -> Card {
     let mut card = Card::default();
-    for (key, node) in read::table(document, "[brake.gap]")? {
-        match key.name.as_str() {
-            "title" | "description" => {
-                read::string(node, "a text")?;
-            }
-            "calibrated_from" => {
-                let what = "what the card was calibrated from";
-                card.calibrated_from = Some(read::string(node, what)?.trim().to_owned());
-            }
-            "correlation" => card.correlations.extend_from_slice(statements(key, node)?),
-            "joint" => card.joints.extend_from_slice(statements(key, node)?),
-            _ => collect(key.name.clone(), key, node, &mut card.statements)?,
-        }
+    let entries = mistakes.keep(read::table(document, "[brake.gap]"));
+    for (key, node) in entries.into_iter().flatten() {
+        mistakes.keep(read_entry(key, node, &mut card));
     }
-    Ok(card)
+    card
+}
+
+fn read_entry(key: &Key, node: &Node, card: &mut Card) -> Result<()> {
+    match key.name.as_str() {
+        "title" | "description" => {
+            read::string(node, "the text")?;
+        }
+        "calibrated_from" => {
+            let what = "what the card was calibrated from";
+            card.calibrated_from = Some(read::string(node, what)?.trim().to_owned());
+        }
+        "correlation" => card.correlations.extend_from_slice(statements(key, node)?),
+        "joint" => card.joints.extend_from_slice(statements(key, node)?),
+        _ => collect(key.name.clone(), key, node, &mut card.statements)?,
+    }
+    Ok(())
 }
 
 /// The statements that begin with a header in double brackets.
@@ -79,10 +88,11 @@ fn collect(path: String, key: &Key, node: &Node, into: &mut Vec<Statement>) -> R
     let group = format!("{path}.");
     match &node.value {
         Value::Table(entries) if PARAMETERS.iter().any(|info| info.path.starts_with(&group)) => {
+            let mut mistakes = Mistakes::default();
             for (key, child) in entries {
-                collect(format!("{path}.{}", key.name), key, child, into)?;
+                mistakes.keep(collect(format!("{path}.{}", key.name), key, child, into));
             }
-            Ok(())
+            mistakes.none_or(Some(()))
         }
         _ => Err(unknown_input(&path, key)),
     }

@@ -59,7 +59,7 @@ pub(super) fn joint(
             }
             // A later card wins, as it does for inputs; within one card a pair is stated once.
             if by_pair.get(&pair).is_some_and(|old| Arc::ptr_eq(&old.place.text, &new.place.text)) {
-                let problem = "this pair has a correlation already";
+                let problem = "duplicate correlation for this pair";
                 return Err(new.place.error(problem, "expected one statement for each pair"));
             }
             by_pair.insert(pair, new);
@@ -95,7 +95,7 @@ fn read_statement(inputs: &[Input], statement: &Node) -> Result<Vec<Placed>> {
             .error(problem, format!("expected two inputs, such as {EXAMPLE}")));
     };
     let [first, second] = names.as_slice() else {
-        let problem = format!("{} inputs are named", names.len());
+        let problem = format!("two inputs must be named, not {}", names.len());
         return Err(between
             .place
             .error(problem, format!("expected two inputs, such as {EXAMPLE}")));

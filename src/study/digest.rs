@@ -1,6 +1,6 @@
 //! Digests: of the resolved study, which fixes every number of a run, and of its raw texts.
 
-use super::{LimitKind, Study, TighteningCost};
+use super::{Input, LimitKind, Study, TighteningCost};
 use crate::reliability::adaptive::Until;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -38,7 +38,7 @@ impl Study {
                 input.group.as_deref().unwrap_or("")
             ));
             lines.push(format!("nature {} {}", input.target.path(), input.nature.name()));
-            if let Some(cost) = cost_text(&input.cost) {
+            if let Some(cost) = cost_text(input) {
                 lines.push(format!("cost {} {cost}", input.target.path()));
             }
         }
@@ -106,9 +106,9 @@ impl Study {
 }
 
 /// The cost of an input if it is not the usual one.
-fn cost_text(cost: &TighteningCost) -> Option<String> {
-    match cost {
-        cost if *cost == TighteningCost::default() => None,
+fn cost_text(input: &Input) -> Option<String> {
+    match &input.cost {
+        cost if *cost == TighteningCost::usual(input.target.parameter, input.known) => None,
         TighteningCost::None => Some("none".to_owned()),
         TighteningCost::PerHalving(cost) => Some(format!("halving={cost:e}")),
         TighteningCost::Grades(grades) => {

@@ -41,8 +41,8 @@ impl Value {
     /// What the value is, for a person.
     pub fn described(&self) -> &'static str {
         match self {
-            Value::String(_) => "a text",
-            Value::Integer(..) => "a whole number",
+            Value::String(_) => "a string",
+            Value::Integer(..) => "an integer",
             Value::Float(_) => "a number",
             Value::Boolean(_) => "true or false",
             Value::Datetime => "a date",

@@ -65,11 +65,13 @@ pub(super) fn epistemic(node: Option<&Node>) -> Result<EpistemicPlan> {
     if let Some(node) = section.get("outer") {
         plan.outer = read::integer(node, 0, OUTER.1, "1200")?;
         if plan.outer != 0 && plan.outer < OUTER.0 {
-            let problem = format!("{} sets show no quantiles", plan.outer);
-            return Err(node.place.error(problem, format!("expected 0, or at least {}", OUTER.0)));
+            let problem = format!("outer = {} is too few", plan.outer);
+            return Err(node
+                .place
+                .error(problem, format!("expected 0 (off), or at least {}", OUTER.0)));
         }
         if !plan.outer.is_multiple_of(SECTIONS as u64) {
-            let problem = format!("{} sets do not make {SECTIONS} equal sections", plan.outer);
+            let problem = format!("outer = {} is not a multiple of {SECTIONS}", plan.outer);
             let expected = format!("expected a multiple of {SECTIONS}, such as 1200");
             return Err(node.place.error(problem, expected));
         }
@@ -77,7 +79,7 @@ pub(super) fn epistemic(node: Option<&Node>) -> Result<EpistemicPlan> {
     if let Some(node) = section.get("inner") {
         plan.inner = read::integer(node, INNER.0, INNER.1, "128")?;
         if !plan.inner.is_multiple_of(2) {
-            let problem = format!("{} descents have no halves", plan.inner);
+            let problem = format!("inner must be even, not {}", plan.inner);
             return Err(node.place.error(problem, "expected an even number, such as 128"));
         }
     }

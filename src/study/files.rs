@@ -9,7 +9,7 @@ pub struct NamedText {
     pub text: String,
 }
 
-/// Where cards and the columns of empirical laws come from. A failure is its reason, in a few words.
+/// Where cards and the files of empirical laws and joint samples come from. A failure is its reason, in a few words.
 pub trait Files {
     /// The card called `name`, which was named by the study file or, if `by_option`, by `--set card=…`.
     ///
@@ -17,31 +17,20 @@ pub trait Files {
     /// Why the card cannot be read.
     fn card(&mut self, name: &str, by_option: bool) -> std::result::Result<NamedText, String>;
 
-    /// The numbers, in SI, of a column of the file `name` that the card `card` names.
-    ///
-    /// # Errors
-    /// Why the column cannot be read.
-    fn column(
-        &mut self,
-        card: &str,
-        name: &str,
-        column: &str,
-    ) -> std::result::Result<Vec<f64>, String>;
-
     /// The whole of the file `name` that the card `card` names, column by column.
     ///
     /// # Errors
     /// Why the file cannot be read.
-    fn sample(&mut self, card: &str, name: &str) -> std::result::Result<SampleFile, String> {
-        let _ = (card, name);
-        Err("no files of joint samples are read here".to_owned())
-    }
+    fn sample(&mut self, card: &str, name: &str) -> std::result::Result<SampleFile, String>;
 }
 
 /// A column of numbers, or why it holds none, in a few words.
 pub type SampleColumn = (String, std::result::Result<Vec<f64>, String>);
 
-/// A file of joint samples, read.
+/// A column of numbers, `None` where one is missing, or why it holds none, in a few words.
+pub type NumberColumn = (String, std::result::Result<Vec<Option<f64>>, String>);
+
+/// A file of columns, read.
 #[derive(Debug, Clone)]
 pub struct SampleFile {
     /// SHA-256 of the file, in hexadecimal.

@@ -2,13 +2,14 @@
 
 use super::card::{Card, Statement};
 use super::digest::of_numbers;
-use super::empirical::ColumnReader;
 use super::epistemic::nature;
+use super::files::Files;
 use super::law::understand;
+use super::mistakes::Mistakes;
 use super::read;
 use super::together::Together;
 use super::values::check_surface;
-use super::{Input, Known, Nature, TighteningCost, tighten};
+use super::{Input, Known, Nature, TighteningCost, pairs, tighten};
 use crate::error::Result;
 use crate::physics::design::{Design, Target};
 use crate::physics::parameters::Parameter;
@@ -22,12 +23,14 @@ use crate::uncertainty::{Law, Marginal};
 pub(super) fn inputs(
     card: &Card,
     design: &Design<f64>,
-    columns: ColumnReader<'_>,
+    files: &mut dyn Files,
 ) -> Result<Vec<Input>> {
     let mut inputs = Vec::new();
+    let mut mistakes = Mistakes::default();
     for statement in &card.statements {
-        check_surface(statement.target, design, &statement.key)?;
-        let (template, each_surface) = input(statement, &mut *columns)?;
+        let input = check_surface(statement.target, design, &statement.key)
+            .and_then(|()| input(statement, &mut *files));
+        let Some((template, each_surface)) = mistakes.keep(input) else { continue };
         if !each_surface {
             inputs.push(template);
             continue;
@@ -44,19 +47,20 @@ pub(super) fn inputs(
     }
     for together in &card.together {
         for (target, values) in &together.members {
-            check_surface(*target, design, &together.key)?;
-            inputs.push(member(together, *target, values)?);
+            let input = check_surface(*target, design, &together.key)
+                .and_then(|()| member(together, *target, values));
+            inputs.extend(mistakes.keep(input));
         }
     }
     inputs.sort_by_key(|input| input.target);
-    Ok(inputs)
+    mistakes.none_or(Some(inputs))
 }
 
 /// One input of those that are drawn together.
 fn member(together: &Together, target: Target, values: &[f64]) -> Result<Input> {
     let law = Law::discrete(values.to_vec(), None).map_err(|_| {
-        let problem = format!("{} has one and the same value in every row", target.path());
-        let expected = "expected values that differ: a constant belongs in [design]";
+        let problem = format!("{} is constant in every row", target.path());
+        let expected = "expected values that differ; a constant belongs in [design]";
         together.key.place.error(problem, expected)
     })?;
     Ok(Input {
@@ -74,10 +78,10 @@ fn member(together: &Together, target: Target, values: &[f64]) -> Result<Input> 
 }
 
 /// One statement as an input, and whether it stands for one on each surface.
-fn input(statement: &Statement, columns: ColumnReader<'_>) -> Result<(Input, bool)> {
+fn input(statement: &Statement, files: &mut dyn Files) -> Result<(Input, bool)> {
     let Statement { target, key, node } = statement;
     if target.parameter == Parameter::BrakeRotors {
-        let expected = "expected a continuous parameter: rotors are counted";
+        let expected = "expected a continuous parameter; the number of rotors is an integer";
         return Err(key.place.error("brake.rotors cannot be uncertain", expected));
     }
     let entries = read::table(node, "law = \"normal\"")?;
@@ -88,7 +92,7 @@ fn input(statement: &Statement, columns: ColumnReader<'_>) -> Result<(Input, boo
             key.place.error(problem, format!("expected {expected}"))
         })
     };
-    let law = understand(statement, columns)?;
+    let law = understand(statement, files)?;
     let each_surface = match find("each_surface") {
         None => false,
         Some((key, node)) => {
@@ -101,7 +105,7 @@ fn input(statement: &Statement, columns: ColumnReader<'_>) -> Result<(Input, boo
     };
     let known_names = Known::ALL.map(Known::name);
     let known_node = require("known", "known = \"at build\", \"on the day\" or \"never\"")?;
-    let known = read::choice(known_node, "time of knowledge", &known_names, Known::from_name)?;
+    let known = read::choice(known_node, "value of `known`", &known_names, Known::from_name)?;
     let nature = match find("nature") {
         Some((_, node)) => nature(node)?,
         None => Nature::default_of(known, law.readings.is_some()),
@@ -109,11 +113,13 @@ fn input(statement: &Statement, columns: ColumnReader<'_>) -> Result<(Input, boo
     let source_node = require("source", "source = \"…\": where the distribution comes from")?;
     let source = read::string(source_node, "where the distribution comes from")?.trim().to_owned();
     let group = match find("group") {
-        Some((_, node)) => Some(read::string(node, "the name of a group")?.trim().to_owned()),
+        Some((_, node)) => Some(pairs::group(node, Some(*target))?),
         None => each_surface.then(|| target.path()),
     };
-    let cost =
-        find("cost").map_or(Ok(TighteningCost::default()), |(_, node)| tighten::cost(node))?;
+    let cost = find("cost").map_or_else(
+        || Ok(TighteningCost::usual(target.parameter, known)),
+        |(_, node)| tighten::cost(node),
+    )?;
     let input = Input {
         target: *target,
         marginal: law.marginal,

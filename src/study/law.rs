@@ -4,8 +4,10 @@
 
 use super::card::Statement;
 use super::document::{Key, Node, Table, Value};
-use super::empirical::{ColumnReader, listed, observed};
+use super::empirical::{listed, observed};
+use super::files::Files;
 use super::laws::{Kind, LAWS, LawInfo, keys_of, kind_of, law_keys};
+use super::mistakes::all;
 use super::read;
 use super::values::{check_possible, written};
 use crate::error::{Error, Result};
@@ -37,7 +39,7 @@ struct Given<'n> {
 /// # Errors
 /// A diagnostic: unknown law or key, keys missing or too many, an impossible number, no probability
 /// between the ends of a truncation.
-pub(super) fn understand(statement: &Statement, columns: ColumnReader<'_>) -> Result<Understood> {
+pub(super) fn understand(statement: &Statement, files: &mut dyn Files) -> Result<Understood> {
     let entries = read::table(&statement.node, "law = \"normal\"")?;
     let any = |name: &str| entries.iter().find(|(key, _)| key.name == name).map(|(_, node)| node);
     let names: Vec<&str> = LAWS.iter().map(|info| info.name).collect();
@@ -57,7 +59,7 @@ pub(super) fn understand(statement: &Statement, columns: ColumnReader<'_>) -> Re
     let mut canonical = info.name.to_owned();
     let mut readings = None;
     let (law, error_place) = if info.name == "empirical" {
-        let (values, node) = observed(parameter, &|key| reader.entry(key), columns)?;
+        let (values, node) = observed(parameter, &|key| reader.entry(key), files)?;
         canonical.push_str(&format!(" values={}", super::digest::of_numbers(&values)));
         (Law::empirical(values, None), node)
     } else if form.contains(&"readings") {
@@ -89,8 +91,8 @@ pub(super) fn understand(statement: &Statement, columns: ColumnReader<'_>) -> Re
     let value = |end: &End<'_>| end.map(|(value, _)| value);
     let end_place = high.or(low).map_or(law_node, |(_, node)| node);
     let marginal = Marginal::new(law, value(&low), value(&high)).map_err(|_| {
-        let expected = "expected ends between which the law has some probability";
-        end_place.place.error("the truncation leaves nothing of the law", expected)
+        let expected = "expected bounds between which the law has positive probability";
+        end_place.place.error("the truncated distribution has zero probability", expected)
     })?;
     let text = reader.text(form, readings.as_ref());
     Ok(Understood { marginal, text, canonical, readings })
@@ -100,7 +102,7 @@ pub(super) fn understand(statement: &Statement, columns: ColumnReader<'_>) -> Re
 fn at(node: &Node, error: Error, info: &LawInfo) -> Error {
     match error {
         Error::Argument(message) => {
-            node.place.error(message, format!("expected what the law {} allows", info.name))
+            node.place.error(message, format!("expected valid parameters of the law {}", info.name))
         }
         other => other,
     }
@@ -120,7 +122,7 @@ fn check_keys(statement: &Statement, entries: &Table, info: &LawInfo) -> Result<
             continue;
         }
         if law_keys().any(|other| other == name) || name.starts_with("truncation_") {
-            let problem = format!("`{name}` does not belong to the law {}", info.name);
+            let problem = format!("`{name}` is not a parameter of the law {}", info.name);
             let own: Vec<&str> = keys_of(info).into_iter().chain(ends).collect();
             return Err(key.place.error(problem, read::one_of(&own, '`')));
         }
@@ -235,8 +237,8 @@ impl<'n> Reader<'n> {
         let quantity = self.parameter.quantity.of_difference();
         match &node.value {
             Value::String(text) if text.contains('%') && quantity != Quantity::Number => {
-                let problem = "a share is not a spread";
-                let help = "a spread in per cent of the mean is cv = \"5 %\"".to_owned();
+                let problem = "a percentage is not a standard deviation";
+                let help = "a coefficient of variation is written cv = \"5 %\"".to_owned();
                 let expected = format!(
                     "expected {}, such as \"{}\"",
                     quantity.described(),
@@ -254,12 +256,8 @@ impl<'n> Reader<'n> {
 
     /// The numbers of a form, in its order, and of the optional keys that are there.
     fn given(&self, form: &'static [&'static str]) -> Result<Vec<Given<'n>>> {
-        let mut given = Vec::new();
-        for &key in form.iter().chain(self.info.optional).filter(|key| **key != "readings") {
-            if let Some(node) = self.entry(key) {
-                given.push(self.number(key, node)?);
-            }
-        }
+        let keys = form.iter().chain(self.info.optional).filter(|key| **key != "readings");
+        let given = all(keys.filter_map(|key| Some(self.number(key, self.entry(key)?))))?;
         let find = |key: &str| given.iter().find(|given| given.key == key);
         let increasing = |low: &str, high: &str, strictly: bool| match (find(low), find(high)) {
             (Some(a), Some(b)) if a.value > b.value || strictly && a.value == b.value => {
@@ -344,7 +342,7 @@ impl<'n> Reader<'n> {
     fn check_ratio_scale(&self, node: Option<&Node>) -> Result<()> {
         match node {
             Some(node) if self.parameter.quantity == Quantity::Temperature => {
-                let problem = "cv of a temperature is a share of its distance from absolute zero";
+                let problem = "cv is not meaningful for a temperature, whose zero is a convention";
                 Err(node.place.error(problem, "expected sd, such as sd = \"10 °F\""))
             }
             _ => Ok(()),

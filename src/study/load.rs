@@ -3,7 +3,7 @@
 use super::assemble::assemble;
 use super::digest::of_bytes;
 use super::empirical;
-use super::files::{Files, NamedText, SampleColumn, SampleFile};
+use super::files::{Files, NamedText, NumberColumn, SampleColumn, SampleFile};
 use super::{Override, Study};
 use crate::error::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ impl Study {
     /// [`Error::File`] if the study file cannot be read; a [`crate::error::Diagnostic`] for every
     /// mistake in it, a card that cannot be read included.
     pub fn load(path: Option<&Path>, overrides: &[Override]) -> Result<Study> {
-        Study::load_with(path, overrides, Parquet { column: refuse_column, table: refuse_table })
+        Study::load_with(path, overrides, Parquet { table: refuse_table })
     }
 
     /// [`Study::load`] with a reader of Parquet files, for the data of empirical laws and joint samples.
@@ -84,15 +84,6 @@ impl Files for Disk {
         Ok(NamedText { origin: path.display().to_string(), text })
     }
 
-    fn column(
-        &mut self,
-        card: &str,
-        name: &str,
-        column: &str,
-    ) -> std::result::Result<Vec<f64>, String> {
-        read_column(card, name, column, self.parquet)
-    }
-
     fn sample(&mut self, card: &str, name: &str) -> std::result::Result<SampleFile, String> {
         read_sample(card, name, self.parquet)
     }
@@ -102,20 +93,14 @@ impl Files for Disk {
 /// it hands the reader in.
 #[derive(Debug, Clone, Copy)]
 pub struct Parquet {
-    /// The numbers of one column.
-    pub column: fn(&Path, &str) -> std::result::Result<Vec<f64>, String>,
-    /// All columns in their order.
-    pub table: fn(&Path) -> std::result::Result<Vec<SampleColumn>, String>,
+    /// All columns of a file's bytes, in their order.
+    pub table: fn(&[u8]) -> std::result::Result<Vec<NumberColumn>, String>,
 }
 
 const NO_PARQUET: &str = "Parquet is not read here: export the column as CSV";
 
-/// The readers where there are none.
-fn refuse_column(_: &Path, _: &str) -> std::result::Result<Vec<f64>, String> {
-    Err(NO_PARQUET.to_owned())
-}
-
-fn refuse_table(_: &Path) -> std::result::Result<Vec<SampleColumn>, String> {
+/// The reader where there is none.
+fn refuse_table(_: &[u8]) -> std::result::Result<Vec<NumberColumn>, String> {
     Err(NO_PARQUET.to_owned())
 }
 
@@ -126,11 +111,30 @@ fn beside(card: &str, name: &str) -> PathBuf {
     directory.unwrap_or(Path::new("")).join(name)
 }
 
-fn is_parquet(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending == "parquet")
+/// Whether a file is read as Parquet: by its ending, or, whatever that is, by its first and last bytes.
+pub(super) fn is_parquet(path: &Path, bytes: &[u8]) -> bool {
+    const MAGIC: &[u8] = b"PAR1";
+    let by_ending = path.extension().is_some_and(|ending| {
+        ["parquet", "parq", "pq"].iter().any(|known| ending.eq_ignore_ascii_case(known))
+    });
+    by_ending || bytes.starts_with(MAGIC) && bytes.ends_with(MAGIC)
 }
 
-/// The joint samples in the CSV or Parquet file `name` that the card called `card` names: found relative to
+/// A column in which nothing may be missing.
+fn complete((name, values): NumberColumn) -> SampleColumn {
+    let finite = |(row, value): (usize, Option<f64>)| match value {
+        Some(value) if value.is_finite() => Ok(value),
+        Some(value) => Err(format!("row {} is {value}, not a finite number", row + 1)),
+        None => Err(format!("row {} is null", row + 1)),
+    };
+    let values = values.and_then(|values| values.into_iter().enumerate().map(finite).collect());
+    match values {
+        Ok(values) if Vec::is_empty(&values) => (name, Err("it holds no numbers".to_owned())),
+        values => (name, values),
+    }
+}
+
+/// The columns of the CSV or Parquet file `name` that the card called `card` names: found relative to
 /// the card, or to the working directory for an embedded one.
 ///
 /// # Errors
@@ -143,29 +147,12 @@ pub fn read_sample(
     let path = beside(card, name);
     let bytes = read_bytes(&path)?;
     let sha256 = of_bytes(&bytes);
-    let columns = match is_parquet(&path) {
-        true => (parquet.table)(&path)?,
+    let mut columns = match is_parquet(&path, &bytes) {
+        true => (parquet.table)(&bytes)?.into_iter().map(complete).collect(),
         false => empirical::table(&as_text(bytes)?),
     };
+    empirical::refuse_repeated(&mut columns);
     Ok(SampleFile { sha256, columns })
-}
-
-/// The numbers of a column of the CSV or Parquet file `name` that the card called `card` names: found relative to
-/// the card, or to the working directory for an embedded one.
-///
-/// # Errors
-/// Why the column cannot be read, in a few words.
-pub fn read_column(
-    card: &str,
-    name: &str,
-    column: &str,
-    parquet: Parquet,
-) -> std::result::Result<Vec<f64>, String> {
-    let path = beside(card, name);
-    if is_parquet(&path) {
-        return (parquet.column)(&path, column);
-    }
-    empirical::column(&read_text(&path)?, column)
 }
 
 /// The text of a file, or why there is none.
@@ -173,16 +160,27 @@ pub(super) fn read_text(path: &Path) -> std::result::Result<String, String> {
     as_text(read_bytes(path)?)
 }
 
-fn read_bytes(path: &Path) -> std::result::Result<Vec<u8>, String> {
-    std::fs::read(path).map_err(|error| match error.kind() {
+/// The bytes of a file, or why there are none. A pipe is refused, and so is a device: either may never end.
+///
+/// # Errors
+/// Why the file cannot be read, in a few words.
+pub fn read_bytes(path: &Path) -> std::result::Result<Vec<u8>, String> {
+    let reason = |error: std::io::Error| match error.kind() {
         std::io::ErrorKind::NotFound => "no such file".to_owned(),
-        std::io::ErrorKind::IsADirectory => "it is a directory".to_owned(),
         std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
         _ => error.to_string(),
-    })
+    };
+    let about = std::fs::metadata(path).map_err(reason)?;
+    if about.is_dir() {
+        return Err("it is a directory".to_owned());
+    }
+    if !about.is_file() {
+        return Err("it is a pipe or a device, not a file".to_owned());
+    }
+    std::fs::read(path).map_err(reason)
 }
 
-fn as_text(bytes: Vec<u8>) -> std::result::Result<String, String> {
+pub(super) fn as_text(bytes: Vec<u8>) -> std::result::Result<String, String> {
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         format!("it is not UTF-8 text from byte {valid} on")

@@ -4,6 +4,7 @@
 //! # The file
 //! ```text
 //! # comments start with a number sign; empty lines are skipped
+//! # synthetic: a comment that begins so says that the run was made up, and every result of it will say so
 //! time [s], force [lbf], speed [ft/s], line [ft], fluid [°F], rotor [°F], housing [°F]
 //! 0, 6010, 1.52, 0, 60.1, 60.0, 59.9
 //! ```
@@ -12,15 +13,17 @@
 //! of `force` and `speed` are needed; the rest is what was instrumented. Every further line is one reading,
 //! with a number in every column. Fields may be quoted; numbers have a decimal point.
 //!
-//! In a Parquet file the columns are in SI under the names `time_s`, `force_n`, `speed_m_per_s`, `line_m`,
-//! `fluid_temperature_k`, `rotor_temperature_k`, `housing_temperature_k` (also `tension_n` and
-//! `velocity_m_per_s`, as in the traces that `reeldown` writes).
+//! In a Parquet file the columns have the same names with their units, or are in SI under the names `time_s`,
+//! `force_n`, `speed_m_per_s`, `line_m`, `fluid_temperature_k`, `rotor_temperature_k`, `housing_temperature_k` (also
+//! `tension_n` and `velocity_m_per_s`, as in the traces that `reeldown` writes). It may hold other columns.
 
 use super::digest;
+use super::files::NumberColumn;
+use super::load::{Parquet, as_text, is_parquet, read_bytes};
 use super::place::{Place, Text};
 use crate::descent::driven::{Drive, Record};
 use crate::error::{Error, Result};
-use crate::units::spelling::nearest;
+use crate::units::spelling::{edit_distance, nearest};
 use crate::units::{self, Quantity, number};
 use std::path::Path;
 use std::sync::Arc;
@@ -36,19 +39,21 @@ pub const CHANNELS: [(&str, Quantity, &[&str]); 7] = [
     ("housing", Quantity::Temperature, &["housing_temperature_k"]),
 ];
 
-/// A step in time this many times the usual one is a gap.
+/// A step in time this many times the usual one about it is a gap.
 const GAP: f64 = 5.0;
+/// Steps before and after one that tell the usual one there: a record may be logged faster in one part than in another.
+const ABOUT: usize = 5;
+/// Share of the largest reading by which a force or a speed may lie below zero: an instrument's zero at rest.
+const BELOW_ZERO: f64 = 0.01;
+/// A name that differs from a channel's in so many letters is a misspelling of it.
+const MISSPELT: usize = 2;
 /// The hottest that an instrument can have read, K.
 const HOTTEST_K: f64 = 2000.0;
-
-/// Reads every number column of a Parquet file: names and values, `None` for null. A failure is its reason.
-/// Only a higher floor knows Parquet, so it hands the reader in.
-pub type ParquetColumns = fn(&Path) -> std::result::Result<Vec<(String, Vec<Option<f64>>)>, String>;
 
 /// What is accepted of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Acceptance {
-    /// Longest step in time, as a multiple of the file's median step; infinite accepts gaps.
+    /// Longest step in time, as a multiple of the median step about it; infinite accepts gaps.
     pub longest_step: f64,
 }
 
@@ -65,6 +70,8 @@ pub struct MeasuredRun {
     pub origin: String,
     /// SHA-256 of the numbers in SI, in hexadecimal: independent of units, comments and spacing.
     pub digest: String,
+    /// Whether the file says that it was made up.
+    pub synthetic: bool,
     /// Times, s, strictly increasing.
     pub time_s: Vec<f64>,
     /// Pull on the line, N.
@@ -79,21 +86,25 @@ pub struct MeasuredRun {
     pub rotor_k: Option<Vec<f64>>,
     /// Housing temperature, K.
     pub housing_k: Option<Vec<f64>>,
+    /// Columns of the file that were not read.
+    pub unused: Vec<String>,
 }
 
 impl MeasuredRun {
-    /// Reads a run from a CSV file, or from a Parquet file (by its ending).
+    /// Reads a run from a CSV or Parquet file.
     ///
     /// # Errors
     /// [`Error::File`] for a file that cannot be read; else what [`MeasuredRun::from_csv`] says.
-    pub fn load(path: &Path, acceptance: Acceptance, parquet: ParquetColumns) -> Result<Self> {
+    pub fn load(path: &Path, acceptance: Acceptance, parquet: Parquet) -> Result<Self> {
         let origin = path.display().to_string();
         let help = "name a CSV file with a header such as: time [s], force [lbf], speed [ft/s]";
         let cannot_read = |reason: String| Error::file(path, "read", reason, help);
-        if path.extension().is_some_and(|ending| ending == "parquet") {
-            return from_columns(&origin, parquet(path).map_err(cannot_read)?, acceptance);
+        let bytes = read_bytes(path).map_err(cannot_read)?;
+        if is_parquet(path, &bytes) {
+            let columns = (parquet.table)(&bytes).map_err(cannot_read)?;
+            return from_columns(&origin, columns, acceptance);
         }
-        let text = super::load::read_text(path).map_err(cannot_read)?;
+        let text = as_text(bytes).map_err(cannot_read)?;
         Self::from_csv(&origin, &text, acceptance)
     }
 
@@ -134,7 +145,17 @@ impl MeasuredRun {
             let name = drive.name();
             return Err(Error::argument(format!("{} holds no column `{name}`", self.origin)));
         };
-        Record::new(drive, self.time_s.clone(), values.clone())
+        // What an instrument reads below its zero at rest pulls no line.
+        let values = values.iter().map(|value| value.max(0.0)).collect();
+        Record::new(drive, self.time_s.clone(), values)
+    }
+
+    /// What a reader should know about how the file was read.
+    pub fn note(&self) -> Option<String> {
+        let names = self.unused.iter().take(12).cloned().collect::<Vec<_>>().join(", ");
+        let more = if self.unused.len() > 12 { ", …" } else { "" };
+        (!names.is_empty())
+            .then(|| format!("{}: columns that are not read: {names}{more}", self.origin))
     }
 
     /// What drives a prediction unless told otherwise: the force, if it was recorded.
@@ -155,6 +176,7 @@ impl MeasuredRun {
         MeasuredRun {
             origin: origin.to_owned(),
             digest: digest::of_text(&canonical),
+            synthetic: false,
             time_s: time.unwrap_or_default(),
             force_n: force,
             speed_m_per_s: speed,
@@ -162,8 +184,15 @@ impl MeasuredRun {
             fluid_k: fluid,
             rotor_k: rotor,
             housing_k: housing,
+            unused: Vec::new(),
         }
     }
+}
+
+/// Whether a line is a comment that says that the run was made up.
+fn says_synthetic(line: &str) -> bool {
+    let comment = line.trim_start_matches('\u{feff}').trim_start().strip_prefix('#');
+    comment.is_some_and(|words| words.trim_start().to_lowercase().starts_with("synthetic"))
 }
 
 /// Why a value cannot have been read on an instrument, and what could.
@@ -173,10 +202,6 @@ fn impossible(quantity: Quantity, value: f64) -> Option<(&'static str, String)> 
             "this temperature is impossible",
             "expected one above absolute zero and below 2000 K: is the unit right?",
         ),
-        Quantity::Force | Quantity::Speed if value < 0.0 => (
-            "a line cannot be pushed",
-            "expected zero or more: leave out readings from before and after the pull",
-        ),
         Quantity::Length if value < 0.0 => {
             ("less than no line cannot be out", "expected zero or more")
         }
@@ -185,9 +210,23 @@ fn impossible(quantity: Quantity, value: f64) -> Option<(&'static str, String)> 
     Some((problem, expected.to_owned()))
 }
 
+/// The first reading that is farther below zero than an instrument at rest, of a force or a speed.
+fn pushed(quantity: Quantity, values: &[f64]) -> Option<usize> {
+    let pulls = matches!(quantity, Quantity::Force | Quantity::Speed);
+    let least = -BELOW_ZERO * values.iter().copied().fold(0.0, f64::max);
+    values.iter().position(|value| *value < least).filter(|_| pulls)
+}
+
+/// What a reading below zero says, and what is expected.
+const PUSHED: (&str, &str) = (
+    "a line cannot be pushed",
+    "expected zero or more, or no farther below it than 1 % of the largest reading: leave out readings from before and after \
+     the pull",
+);
+
 /// Where the time goes wrong: the row, the problem, what was expected, help.
 fn irregular(times: &[f64], longest: f64) -> Option<(usize, String, String, Option<String>)> {
-    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     if let Some(k) = steps.iter().position(|step| *step <= 0.0) {
         let (before, now) = (number(times[k], 10), number(times[k + 1], 10));
         let problem = if times[k + 1] == times[k] {
@@ -197,13 +236,22 @@ fn irregular(times: &[f64], longest: f64) -> Option<(usize, String, String, Opti
         };
         return Some((k + 1, problem, "expected later times on later lines".to_owned(), None));
     }
-    let unsorted = steps.clone();
-    steps.sort_by(f64::total_cmp);
-    let median = *steps.get(steps.len() / 2)?;
-    let k = unsorted.iter().position(|step| *step > longest * median)?;
+    let median = |steps: &[f64]| {
+        let mut sorted = steps.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        sorted.get(sorted.len() / 2).copied()
+    };
+    let usual = |k: usize| {
+        let before = median(&steps[k.saturating_sub(ABOUT)..k]);
+        let after = median(&steps[k + 1..(k + 1 + ABOUT).min(steps.len())]);
+        before.into_iter().chain(after).reduce(f64::max)
+    };
+    let (k, median) = (0..steps.len())
+        .filter_map(|k| Some((k, usual(k)?)))
+        .find(|(k, usual)| steps[*k] > longest * usual)?;
     let problem = format!(
         "a gap of {} s before this reading, where the usual step is {} s",
-        number(unsorted[k], 6),
+        number(steps[k], 6),
         number(median, 6)
     );
     let expected = format!("expected steps of at most {} times the usual one", number(longest, 6));
@@ -246,7 +294,7 @@ impl Csv {
             }
         }
         let mut values: [Option<Vec<f64>>; CHANNELS.len()] = Default::default();
-        let mut time_spans = Vec::new();
+        let mut spans: [Vec<std::ops::Range<usize>>; CHANNELS.len()] = Default::default();
         for (fields, span) in lines {
             if fields.len() != columns.len() {
                 let problem = format!(
@@ -259,9 +307,7 @@ impl Csv {
             }
             for ((channel, unit), (field, span)) in columns.iter().zip(fields) {
                 let value = self.value(*channel, unit, &field, span.clone())?;
-                if *channel == 0 {
-                    time_spans.push(span);
-                }
+                spans[*channel].push(span);
                 values[*channel].get_or_insert_default().push(value);
             }
         }
@@ -271,9 +317,16 @@ impl Csv {
             return Err(self.place(header_span).error(problem, "expected two at least below this"));
         }
         if let Some((row, problem, expected, help)) = irregular(times, acceptance.longest_step) {
-            return Err(self.place(time_spans[row].clone()).error_with(problem, expected, help));
+            return Err(self.place(spans[0][row].clone()).error_with(problem, expected, help));
         }
-        Ok(MeasuredRun::new(&self.text.origin, values))
+        for (channel, (_, quantity, _)) in CHANNELS.iter().enumerate() {
+            let column = values[channel].as_deref().unwrap_or_default();
+            if let Some(row) = pushed(*quantity, column) {
+                return Err(self.place(spans[channel][row].clone()).error(PUSHED.0, PUSHED.1));
+            }
+        }
+        let synthetic = self.text.text.lines().any(says_synthetic);
+        Ok(MeasuredRun { synthetic, ..MeasuredRun::new(&self.text.origin, values) })
     }
 
     /// The lines that hold something, as fields, with the bytes they stand on.
@@ -388,41 +441,92 @@ fn fields(line: &str, start: usize) -> Vec<Field> {
     fields
 }
 
-/// A run from columns in SI.
+/// A run from the columns of a Parquet file.
 fn from_columns(
     origin: &str,
-    columns: Vec<(String, Vec<Option<f64>>)>,
+    columns: Vec<NumberColumn>,
     acceptance: Acceptance,
 ) -> Result<MeasuredRun> {
-    let wrong = |what: String| Err(Error::argument(format!("{origin}: {what}")));
+    let wrong = |what: String| Error::argument(format!("{origin}: {what}"));
     let mut values: [Option<Vec<f64>>; CHANNELS.len()] = Default::default();
-    for (channel, (name, quantity, names)) in CHANNELS.iter().enumerate() {
-        let mut found = columns.iter().filter(|(column, _)| names.contains(&column.as_str()));
-        let Some((column, entries)) = found.next() else { continue };
-        if let Some((other, _)) = found.next() {
-            return wrong(format!("columns {column} and {other} both hold the {name}"));
+    let mut held: [Option<String>; CHANNELS.len()] = Default::default();
+    let mut unused = Vec::new();
+    for (column, entries) in columns {
+        let Some((channel, unit)) = channel_of(&column).map_err(wrong)? else {
+            unused.push(column);
+            continue;
+        };
+        let (name, quantity, _) = CHANNELS[channel];
+        if let Some(other) = &held[channel] {
+            return Err(wrong(format!("columns {other} and {column} both hold the {name}")));
         }
+        let entries = entries.map_err(|reason| wrong(format!("column {column}: {reason}")))?;
         let mut series = Vec::with_capacity(entries.len());
-        for (row, entry) in entries.iter().enumerate() {
+        for (row, entry) in entries.into_iter().enumerate() {
             let Some(value) = entry.filter(|value| value.is_finite()) else {
-                return wrong(format!("row {} of column {column} is missing", row + 1));
+                return Err(wrong(format!("row {} of column {column} is missing", row + 1)));
             };
-            if let Some((problem, expected)) = impossible(*quantity, value) {
-                return wrong(format!("row {} of {column}: {problem}: {expected}", row + 1));
+            let value = match unit {
+                None => value,
+                Some(unit) => units::parse(&format!("{value} {unit}"), quantity).map_err(|e| {
+                    wrong(format!("column {column}: {}, {}", e.problem, e.expected))
+                })?,
+            };
+            if let Some((problem, expected)) = impossible(quantity, value) {
+                return Err(wrong(format!("row {} of {column}: {problem}: {expected}", row + 1)));
             }
             series.push(value);
         }
+        if let Some(row) = pushed(quantity, &series) {
+            return Err(wrong(format!("row {} of {column}: {}: {}", row + 1, PUSHED.0, PUSHED.1)));
+        }
         values[channel] = Some(series);
+        held[channel] = Some(column);
+    }
+    // A channel that is not there, and a column that is named nearly like it: a run is not read without the one for
+    // the sake of the other's spelling.
+    let missing = CHANNELS.iter().zip(&held).filter(|(_, held)| held.is_none());
+    for known in missing.flat_map(|((_, _, names), _)| names.iter()) {
+        let near = |name: &&String| edit_distance(name, known) <= MISSPELT;
+        if let Some(name) = unused.iter().find(near) {
+            return Err(wrong(format!(
+                "unknown column `{name}`: did you mean `{known}`? Give a column that is something else another name"
+            )));
+        }
     }
     let times = values[0].as_deref().unwrap_or_default();
     if times.len() < 2 || (values[1].is_none() && values[2].is_none()) {
-        return wrong(
+        return Err(wrong(
             "expected a column time_s with two rows at least, and force_n or speed_m_per_s"
                 .to_owned(),
-        );
+        ));
     }
     if let Some((row, problem, expected, _)) = irregular(times, acceptance.longest_step) {
-        return wrong(format!("row {}: {problem}: {expected}", row + 1));
+        return Err(wrong(format!("row {}: {problem}: {expected}", row + 1)));
     }
-    Ok(MeasuredRun::new(origin, values))
+    Ok(MeasuredRun { unused, ..MeasuredRun::new(origin, values) })
+}
+
+/// The channel that a column of a Parquet file holds, with its unit unless that is SI's; none of other columns.
+fn channel_of(column: &str) -> std::result::Result<Option<(usize, Option<&str>)>, String> {
+    if let Some(channel) = CHANNELS.iter().position(|(_, _, names)| names.contains(&column)) {
+        return Ok(Some((channel, None)));
+    }
+    let (name, unit) = match column.split_once('[') {
+        Some((name, rest)) => (name.trim(), rest.trim().strip_suffix(']').map(str::trim)),
+        None => (column.trim(), None),
+    };
+    let named = |(known, ..): &(&str, Quantity, &[&str])| *known == name.to_lowercase();
+    let Some(channel) = CHANNELS.iter().position(named) else { return Ok(None) };
+    match unit.filter(|unit| !unit.is_empty()) {
+        Some(unit) => Ok(Some((channel, Some(unit)))),
+        None => {
+            let (name, quantity, names) = CHANNELS[channel];
+            let si = names.first().copied().unwrap_or(name);
+            Err(format!(
+                "column `{column}` has no unit: expected {name} [{}], or in SI {si}",
+                quantity.si_unit()
+            ))
+        }
+    }
 }

@@ -6,6 +6,7 @@
 
 mod assemble;
 mod card;
+mod columns;
 mod correlation;
 mod digest;
 mod document;
@@ -17,6 +18,7 @@ mod law;
 mod laws;
 mod load;
 pub mod measured_run;
+mod mistakes;
 mod over;
 mod overrides;
 mod pairs;
@@ -39,8 +41,8 @@ use crate::uncertainty::{Joint, Marginal, Measure, Readings};
 pub use assemble::assemble;
 pub use digest::sha256;
 pub use epistemic::{EpistemicPlan, Nature};
-pub use files::{Files, NamedText, SampleColumn, SampleFile};
-pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, Parquet, read_column, read_sample};
+pub use files::{Files, NamedText, NumberColumn, SampleColumn, SampleFile};
+pub use load::{EMBEDDED_CARD, EMBEDDED_STUDY, Parquet, read_bytes, read_sample};
 pub use measured_run::MeasuredRun;
 pub use over::{MOST_CELLS, Over, design_path, option_error};
 pub use overrides::Override;

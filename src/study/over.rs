@@ -34,8 +34,7 @@ pub struct Over {
 }
 
 impl Over {
-    /// Reads `PATH=FROM..TO:N` as given to `option` ("--over"). A unit at one end alone is that of both; two
-    /// bare numbers are SI.
+    /// Reads `PATH=FROM..TO:N` as given to `option` ("--over"). A unit at one end alone is that of both.
     ///
     /// # Errors
     /// A diagnostic in the option's text: a part that is missing, an unknown path, a unit of another

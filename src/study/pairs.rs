@@ -1,8 +1,10 @@
-//! `pairs` of `[sensitivity]`: the pairs of inputs whose second-order index is asked for.
+//! Names of factors: groups of inputs, and `pairs` of `[sensitivity]`, whose second-order index is asked for.
 
 use super::document::{Node, Value};
+use super::values::parameter_path;
 use super::{Input, read};
 use crate::error::Result;
+use crate::physics::design::Target;
 use crate::units::spelling::nearest;
 
 const EXAMPLE: &str = "[[\"fluid.shear_factor\", \"initial.temperature\"]]";
@@ -21,7 +23,7 @@ pub(super) fn pairs(node: &Node, inputs: &[Input]) -> Result<Vec<(String, String
     for pair in list(node)? {
         let names = list(&pair)?;
         let [first, second] = names.as_slice() else {
-            let problem = format!("{} inputs are named", names.len());
+            let problem = format!("two inputs must be named, not {}", names.len());
             let expected = format!("expected pairs, such as {EXAMPLE}");
             return Err(pair.place.error(problem, expected));
         };
@@ -42,6 +44,24 @@ pub(super) fn pairs(node: &Node, inputs: &[Input]) -> Result<Vec<(String, String
     Ok(found)
 }
 
+/// The name of a group of inputs, of which `own` is one. It must not be what another factor is called.
+pub(super) fn group(node: &Node, own: Option<Target>) -> Result<String> {
+    let name = read::string(node, "the name of a group")?.trim().to_owned();
+    let refused = |problem: String| {
+        let expected = "expected a name that only this group has, such as \"material data\"";
+        Err(node.place.error(problem, expected))
+    };
+    if name.ends_with("(all)") {
+        return refused(format!("\"{name}\" ends in \"(all)\", which is reserved"));
+    }
+    match parameter_path(&name) {
+        Some(path) if own.map(|own| Target::whole(own.parameter)) != Some(path) => {
+            refused(format!("\"{name}\" is the name of an input"))
+        }
+        _ => Ok(name),
+    }
+}
+
 /// The inputs that a name stands for.
 fn members(name: &str, inputs: &[Input]) -> Vec<usize> {
     let all = inputs.iter().enumerate();
@@ -51,13 +71,20 @@ fn members(name: &str, inputs: &[Input]) -> Vec<usize> {
 
 fn factor(node: &Node, inputs: &[Input]) -> Result<String> {
     let name = read::string(node, "an input")?.trim().to_owned();
-    if !members(&name, inputs).is_empty() {
-        return Ok(name);
+    match members(&name, inputs)[..] {
+        [] => {}
+        // A group of one input is no factor beside that.
+        [one] => return Ok(inputs.get(one).map_or(name, |input| input.target.path())),
+        _ => return Ok(name),
     }
     let paths: Vec<String> = inputs.iter().map(|input| input.target.path()).collect();
     let groups = inputs.iter().filter_map(|input| input.group.as_deref());
     let known = groups.chain(paths.iter().map(String::as_str));
     let help = nearest(&name, known).map(|near| format!("did you mean \"{near}\"?"));
     let expected = "expected the path of an input of the card, or the name of a group of them";
-    Err(node.place.error_with(format!("nothing uncertain is called \"{name}\""), expected, help))
+    Err(node.place.error_with(
+        format!("no uncertain input or group is named \"{name}\""),
+        expected,
+        help,
+    ))
 }

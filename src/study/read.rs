@@ -1,13 +1,15 @@
 //! Reading values of known kinds out of a tree, with a diagnostic for everything else.
 
 use super::document::{Key, Node, Table, Value};
+use super::mistakes::all;
 use super::place::Place;
+use super::values::written;
 use super::vocabulary::KeyInfo;
 use crate::error::Result;
 use crate::units::spelling::nearest;
 use crate::units::{self, Quantity};
 
-/// A value of a quantity, SI: a text with a unit, or a bare number in SI.
+/// A value of a quantity, SI: a text with a unit; a pure number may be bare.
 pub(super) fn quantity(node: &Node, quantity: Quantity) -> Result<f64> {
     let value = match &node.value {
         Value::Integer(value, _) | Value::Float(value) => *value,
@@ -79,12 +81,12 @@ pub(super) fn integer(node: &Node, least: u64, most: u64, example: &str) -> Resu
 pub(super) fn string<'n>(node: &'n Node, what: &str) -> Result<&'n str> {
     match &node.value {
         Value::String(text) if text.trim().is_empty() => {
-            Err(node.place.error("this text is empty", format!("expected {what}")))
+            Err(node.place.error("this string is empty", format!("expected {what}")))
         }
         Value::String(text) => Ok(text),
         other => {
             let problem = format!("this is {}", other.described());
-            Err(node.place.error(problem, format!("expected {what}, as a text in quotes")))
+            Err(node.place.error(problem, format!("expected {what} as a quoted string")))
         }
     }
 }
@@ -150,6 +152,13 @@ pub(super) fn unknown_key(key: &Key, section: &str, names: &[&str]) -> crate::er
     key.place.error_with(problem, one_of(names, '`'), help)
 }
 
+/// Checks that every key is known.
+pub(super) fn known_keys(entries: &Table, section: &str, keys: &[KeyInfo]) -> Result<()> {
+    let names: Vec<&str> = keys.iter().map(|info| info.name).collect();
+    let strange = entries.iter().filter(|(key, _)| !names.contains(&key.name.as_str()));
+    all(strange.map(|(key, _)| Err(unknown_key(key, section, &names)))).map(|_: Vec<()>| ())
+}
+
 /// The entries of a section whose keys are all known.
 pub(super) struct Section<'n> {
     pub name: &'static str,
@@ -162,15 +171,10 @@ impl<'n> Section<'n> {
     pub fn new(
         name: &'static str,
         place: &'n Place,
-        entries: &'n [(Key, Node)],
+        entries: &'n Table,
         keys: &[KeyInfo],
     ) -> Result<Self> {
-        for (key, _) in entries {
-            if !keys.iter().any(|info| info.name == key.name) {
-                let names: Vec<&str> = keys.iter().map(|info| info.name).collect();
-                return Err(unknown_key(key, &format!(" in {name}"), &names));
-            }
-        }
+        known_keys(entries, &format!(" in {name}"), keys)?;
         Ok(Section { name, place, entries })
     }
 
@@ -195,11 +199,19 @@ impl<'n> Section<'n> {
     }
 }
 
-/// A share strictly between 0 and 1: a number, or a text in per cent.
+/// The shares that can be told from 0 and from 1: with any of them as reliability and as confidence, the number
+/// of samples that a demonstration takes can be counted.
+pub(super) const SHARES: std::ops::RangeInclusive<f64> = 1e-12..=1.0 - 1e-12;
+
+/// A share strictly between 0 and 1, in [`SHARES`]: a number, or a text in per cent.
 pub(super) fn open_share(node: &Node, what: &str, example: &str) -> Result<f64> {
     let value = quantity(node, Quantity::Number)?;
-    if value > 0.0 && value < 1.0 {
+    if SHARES.contains(&value) {
         Ok(value)
+    } else if value > 0.0 && value < 1.0 {
+        let problem = format!("{what} {} is out of range", written(node));
+        let expected = format!("expected a share from 1e-12 to 1 - 1e-12, such as {example}");
+        Err(node.place.error(problem, expected))
     } else {
         let expected = format!("expected a share strictly between 0 and 1, such as {example}");
         Err(node.place.error(format!("{what} {value} is impossible"), expected))

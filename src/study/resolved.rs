@@ -80,9 +80,12 @@ impl Study {
         let stated = self.stated.iter().find(|stated| stated.target == target);
         let whole = Target::whole(target.parameter);
         let inherited = || self.stated.iter().find(|stated| stated.target == whole);
-        let source = match stated.or_else(inherited) {
-            Some(stated) => format!("{}: {}", stated.origin, stated.text),
-            None => info.source.to_owned(),
+        let own = self.inputs.iter().find(|input| input.target == target);
+        let measured = own.filter(|own| self.prior.is_some() && own.marginal.mean() == value);
+        let source = match (stated.or_else(inherited), measured) {
+            (Some(stated), _) => format!("{}: {}", stated.origin, stated.text),
+            (None, Some(own)) => format!("mean of its law: {}", own.source),
+            (None, None) => info.source.to_owned(),
         };
         let members: Vec<_> = self
             .inputs

@@ -10,7 +10,9 @@ use super::vocabulary::{
 };
 mod statements;
 
+use super::read::SHARES;
 use super::{Known, Nature};
+use crate::descent::vector::TOLERANCES;
 use crate::descent::{Model, OutcomeQuantity};
 use crate::physics::parameters::{PARAMETERS, Parameter, ParameterInfo};
 use crate::sampling;
@@ -33,8 +35,11 @@ pub fn study() -> Value {
     let requirement = table(REQUIREMENT, |_| share(), &["reliability", "confidence"]);
     let mut sampling = table(SAMPLING, sampling_key, &[]);
     insert(&mut sampling, "not", json!({ "required": ["samples", "until"] }));
-    let numerics =
-        table(NUMERICS, |_| json!({ "type": "number", "minimum": 1e-12, "maximum": 1e-2 }), &[]);
+    let numerics = table(
+        NUMERICS,
+        |_| json!({ "type": "number", "minimum": TOLERANCES.start(), "maximum": TOLERANCES.end() }),
+        &[],
+    );
     let names = json!({ "type": "string", "pattern": "\\S" });
     let pair = json!({ "type": "array", "items": names, "minItems": 2, "maxItems": 2 });
     let sensitivity = table(
@@ -161,7 +166,7 @@ fn whole(least: u64) -> Value {
 /// A share strictly between 0 and 1, as a number or in per cent.
 fn share() -> Value {
     json!({ "anyOf": [
-        { "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1 },
+        { "type": "number", "minimum": SHARES.start(), "maximum": SHARES.end() },
         { "type": "string", "pattern": "^\\s*[0-9.]", "examples": ["99 %"] }
     ] })
 }
@@ -212,30 +217,26 @@ fn reference(quantity: Quantity) -> Value {
     json!({ "$ref": format!("#/$defs/{}", quantity_name(quantity)) })
 }
 
-/// A value of every quantity: a number in SI, or a text with a unit.
+/// A value of every quantity: a text with a unit; a pure number may be bare.
 fn quantities() -> Map<String, Value> {
     let number = "^\\s*[+\\-−]?([0-9]|\\.[0-9])";
     Quantity::ALL
         .into_iter()
         .map(|quantity| {
-            let unit = quantity.si_unit();
-            // What follows a number's last digit and can begin a unit.
+            // Something that no number holds: the unit.
             let pattern = match quantity {
                 Quantity::Number => number.to_owned(),
-                _ => format!("{number}.*[^0-9.\\s]\\s*$"),
+                _ => format!("{number}.*[^0-9.eE+\\-−_\\s]"),
             };
-            let bare = if unit.is_empty() {
-                "a pure number".to_owned()
-            } else {
-                format!("a number in SI: {unit}")
+            let example = quantity.example();
+            let text = json!({ "type": "string", "pattern": pattern, "examples": [example] });
+            let schema = match quantity {
+                Quantity::Number => json!({
+                    "anyOf": [{ "type": "number", "description": "a pure number" }, text],
+                    "examples": [example],
+                }),
+                _ => text,
             };
-            let schema = json!({
-                "anyOf": [
-                    { "type": "number", "description": bare },
-                    { "type": "string", "pattern": pattern, "examples": [quantity.example()] }
-                ],
-                "examples": [quantity.example()],
-            });
             (quantity_name(quantity), schema)
         })
         .collect()

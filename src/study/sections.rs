@@ -1,7 +1,8 @@
 //! The sections of a study file, one function each.
 
 use super::document::{Key, Node, Value};
-use super::read::{self, Section, unknown_key};
+use super::mistakes::{Mistakes, all};
+use super::read::{self, Section};
 use super::until;
 use super::values::{check_surface, parameter_path, possible_range, written};
 use super::vocabulary as keys;
@@ -10,6 +11,7 @@ use super::{
 };
 use crate::descent::OutcomeQuantity;
 use crate::descent::outcome::TIME_LIMIT_S;
+use crate::descent::vector::{TOLERANCES, default_tolerance};
 use crate::error::Result;
 use crate::physics::design::{Design, Target};
 use crate::physics::parameters::{PARAMETERS, Parameter};
@@ -21,8 +23,6 @@ use crate::units::spelling::nearest;
 const DEFAULT_SAMPLES: u64 = 100_000;
 /// Seed of a study that does not name one.
 const DEFAULT_SEED: u64 = 1993;
-/// Relative error asked of the outcomes.
-const DEFAULT_TOLERANCE: f64 = 1e-6;
 const DEFAULT_SENSITIVITY: SensitivityPlan =
     SensitivityPlan { base_samples: 4096, bootstrap: 1000, pairs: Vec::new() };
 
@@ -35,26 +35,30 @@ pub(super) struct DesignEntry {
 }
 
 /// The leaves of `[design]`, by dotted path, whether it is written with dots, quotes or tables.
-pub(super) fn design_entries(node: &Node) -> Result<Vec<DesignEntry>> {
+///
+/// What is none is left out and kept among the mistakes.
+pub(super) fn design_entries(node: &Node, mistakes: &mut Mistakes) -> Vec<DesignEntry> {
     let mut entries: Vec<DesignEntry> = Vec::new();
     let mut pending = vec![(String::new(), node)];
     while let Some((prefix, node)) = pending.pop() {
-        for (key, child) in read::table(node, "\"brake.gap\" = \"0.062 in\"")? {
+        let table = mistakes.keep(read::table(node, "\"brake.gap\" = \"0.062 in\""));
+        for (key, child) in table.into_iter().flatten() {
             let path =
                 if prefix.is_empty() { key.name.clone() } else { format!("{prefix}.{}", key.name) };
             if let (Value::Table(_), None) = (&child.value, parameter_path(&path)) {
                 pending.push((path, child));
                 continue;
             }
-            let entry = design_entry(&path, key, child)?;
+            let Some(entry) = mistakes.keep(design_entry(&path, key, child)) else { continue };
             if entries.iter().any(|other| other.target == entry.target) {
                 let problem = format!("{path} is given twice");
-                return Err(key.place.error(problem, "expected each design key once"));
+                let error = key.place.error(problem, "expected each design key once");
+                mistakes.keep(Err::<(), _>(error));
             }
             entries.push(entry);
         }
     }
-    Ok(entries)
+    entries
 }
 
 /// One leaf of `[design]`, or of an override.
@@ -94,17 +98,19 @@ pub(super) fn design(layers: [Vec<DesignEntry>; 2]) -> Result<(Design<f64>, Vec<
     if let Some(entry) = chosen {
         let value = possible(entry)?;
         if value.fract() != 0.0 {
-            let problem = format!("{value} rotors are impossible");
+            let problem = format!("the number of rotors must be an integer, not {value}");
             return Err(entry.node.place.error(problem, "expected a whole number, such as 7"));
         }
         design.set_rotors(value as usize);
         stated.push((statement(entry, value), entry.node.clone()));
     }
+    let mut mistakes = Mistakes::default();
     for mut layer in layers {
         layer.sort_by_key(|entry| entry.target);
         for entry in layer.iter().filter(|entry| entry.target != rotors) {
-            check_surface(entry.target, &design, &entry.key)?;
-            let value = possible(entry)?;
+            let value =
+                check_surface(entry.target, &design, &entry.key).and_then(|()| possible(entry));
+            let Some(value) = mistakes.keep(value) else { continue };
             design.set(entry.target, value);
             // The gap as a whole replaces what an earlier layer said of single gaps.
             stated.retain(|(other, _)| {
@@ -116,6 +122,7 @@ pub(super) fn design(layers: [Vec<DesignEntry>; 2]) -> Result<(Design<f64>, Vec<
         }
     }
     stated.sort_by_key(|(stated, _)| stated.target);
+    mistakes.none_or(Some(()))?;
     check_relations(&design, &stated)?;
     Ok((design, stated.into_iter().map(|(stated, _)| stated).collect()))
 }
@@ -160,7 +167,7 @@ fn check_relations(design: &Design<f64>, stated: &[(Stated, Node)]) -> Result<()
         // The baseline fits itself, so one of the two was stated.
         let Some((_, node)) = find(small).or_else(|| find(large)) else { continue };
         let (small_text, large_text) = (text(small), text(large));
-        let problem = format!("{} does not fit {}", small.info().path, large.info().path);
+        let problem = format!("{} is inconsistent with {}", small.info().path, large.info().path);
         let expected = format!(
             "expected {} = {small_text} to be less than {} = {large_text}",
             small.info().path,
@@ -173,40 +180,43 @@ fn check_relations(design: &Design<f64>, stated: &[(Stated, Node)]) -> Result<()
 
 /// `[limits]`.
 pub(super) fn limits(node: &Node) -> Result<Vec<Limit>> {
-    let names = OutcomeQuantity::ALL.map(OutcomeQuantity::name);
     let example = "{ max = \"210 s\" }";
+    let entries = read::table(node, &format!("time = {example}"))?;
+    let limits = all(entries.iter().map(|(key, value)| limit(key, value, example)))?;
+    let mut limits: Vec<Limit> = limits.into_iter().flatten().collect();
+    limits.sort_by_key(|limit| (limit.outcome, limit.kind));
+    Ok(limits)
+}
+
+/// The limits of one outcome.
+fn limit(key: &Key, value: &Node, example: &str) -> Result<Vec<Limit>> {
+    let names = OutcomeQuantity::ALL.map(OutcomeQuantity::name);
     let mut limits = Vec::new();
-    for (key, value) in read::table(node, &format!("time = {example}"))? {
-        let Some(outcome) = OutcomeQuantity::from_name(&key.name) else {
-            let help = nearest(&key.name, names).map(|near| format!("did you mean `{near}`?"));
-            let problem = format!("unknown outcome `{}` in [limits]", key.name);
-            return Err(key.place.error_with(problem, read::one_of(&names, '`'), help));
-        };
-        let section =
-            Section::new("a limit", &value.place, read::table(value, example)?, keys::LIMIT)?;
-        let mut sides = [None, None];
-        for (side, kind) in sides.iter_mut().zip(LimitKind::ALL) {
-            if let Some(node) = section.get(kind.name()) {
-                let value = limit_value(outcome, kind, node)?;
-                *side = Some((value, node));
-                limits.push(Limit { outcome, kind, value, text: written(node) });
-            }
-        }
-        match sides {
-            [Some((max, _)), Some((min, node))] if min >= max => {
-                let problem = format!("no {} can satisfy both limits", outcome.title());
-                return Err(node.place.error(problem, "expected min to be less than max"));
-            }
-            [None, None] => {
-                let problem = format!("the limit on {} is empty", key.name);
-                return Err(value
-                    .place
-                    .error(problem, format!("expected {example}, or min, or both")));
-            }
-            _ => {}
+    let Some(outcome) = OutcomeQuantity::from_name(&key.name) else {
+        let help = nearest(&key.name, names).map(|near| format!("did you mean `{near}`?"));
+        let problem = format!("unknown outcome `{}` in [limits]", key.name);
+        return Err(key.place.error_with(problem, read::one_of(&names, '`'), help));
+    };
+    let section = Section::new("a limit", &value.place, read::table(value, example)?, keys::LIMIT)?;
+    let mut sides = [None, None];
+    for (side, kind) in sides.iter_mut().zip(LimitKind::ALL) {
+        if let Some(node) = section.get(kind.name()) {
+            let value = limit_value(outcome, kind, node)?;
+            *side = Some((value, node));
+            limits.push(Limit { outcome, kind, value, text: written(node) });
         }
     }
-    limits.sort_by_key(|limit| (limit.outcome, limit.kind));
+    match sides {
+        [Some((max, _)), Some((min, node))] if min >= max => {
+            let problem = format!("no {} can satisfy both limits", outcome.title());
+            return Err(node.place.error(problem, "expected min to be less than max"));
+        }
+        [None, None] => {
+            let problem = format!("the limit on {} is empty", key.name);
+            return Err(value.place.error(problem, format!("expected {example}, or min, or both")));
+        }
+        _ => {}
+    }
     Ok(limits)
 }
 
@@ -226,7 +236,7 @@ fn limit_value(outcome: OutcomeQuantity, kind: LimitKind, node: &Node) -> Result
     }
     if outcome == OutcomeQuantity::Time && kind == LimitKind::Max && value >= TIME_LIMIT_S {
         return impossible(format!(
-            "expected less than {TIME_LIMIT_S} s: a descent is followed no longer, and one that takes longer did not deploy"
+            "expected less than {TIME_LIMIT_S} s, the longest simulated time; a slower descent counts as not deployed"
         ));
     }
     Ok(value)
@@ -280,7 +290,7 @@ pub(super) fn sampling(
         Some(node) if plain => {
             let value = read::integer(node, 1, u64::from(u32::MAX), "1")?;
             if value != 1 {
-                let help = "leave replicates out: plain Monte Carlo has an error of its own";
+                let help = "omit replicates: plain Monte Carlo provides its own error estimate";
                 let problem = format!("{value} replicates of plain Monte Carlo");
                 let expected = "expected 1 for the design \"monte-carlo\"";
                 return Err(node.place.error_with(problem, expected, Some(help.to_owned())));
@@ -294,8 +304,10 @@ pub(super) fn sampling(
     if !plan.samples.is_multiple_of(replicates) {
         let near = (plan.samples / replicates).max(1) * replicates;
         let place = section.get("samples").or(section.get("replicates")).unwrap_or(node);
-        let problem =
-            format!("{} samples do not split into {replicates} equal replicates", plan.samples);
+        let problem = format!(
+            "{} samples cannot be divided equally among {replicates} replicates",
+            plan.samples
+        );
         let expected = format!("expected a multiple of {replicates}");
         return Err(place.place.error_with(problem, expected, Some(format!("such as {near}"))));
     }
@@ -304,15 +316,17 @@ pub(super) fn sampling(
 
 /// `[numerics]`.
 pub(super) fn numerics(node: Option<&Node>) -> Result<Numerics> {
-    let mut numerics = Numerics { tolerance: DEFAULT_TOLERANCE };
+    let mut numerics = Numerics { tolerance: default_tolerance() };
     let Some(node) = node else { return Ok(numerics) };
     let entries = read::table(node, "{ tolerance = 1e-6 }")?;
     let section = Section::new("[numerics]", &node.place, entries, keys::NUMERICS)?;
     if let Some(node) = section.get("tolerance") {
         let value = read::quantity(node, Quantity::Number)?;
-        if !(1e-12..=1e-2).contains(&value) {
-            let problem = format!("the tolerance {} is impossible", written(node));
-            return Err(node.place.error(problem, "expected a relative error from 1e-12 to 1e-2"));
+        if !TOLERANCES.contains(&value) {
+            let (least, most) = (TOLERANCES.start(), TOLERANCES.end());
+            let problem = format!("the tolerance {} is out of range", written(node));
+            let expected = format!("expected a relative error from {least:e} to {most:e}");
+            return Err(node.place.error(problem, expected));
         }
         numerics.tolerance = value;
     }
@@ -329,7 +343,7 @@ pub(super) fn sensitivity(node: Option<&Node>) -> Result<SensitivityPlan> {
         plan.base_samples = read::integer(node, 0, 1 << 32, "4096")?;
         if plan.base_samples == 1 {
             let expected = "expected 0 (no indices) or at least 2";
-            return Err(node.place.error("one row has no variance", expected));
+            return Err(node.place.error("base_samples = 1 is too few", expected));
         }
     }
     if let Some(node) = section.get("bootstrap") {
@@ -360,13 +374,4 @@ pub(super) fn reliability(node: Option<&Node>) -> Result<ReliabilityPlan> {
         methods.push(method);
     }
     Ok(ReliabilityPlan { methods: Some(methods) })
-}
-
-/// Checks the keys at the top of a study.
-pub(super) fn check_top(entries: &[(Key, Node)]) -> Result<()> {
-    let names: Vec<&str> = keys::STUDY.iter().map(|info| info.name).collect();
-    match entries.iter().find(|(key, _)| !names.contains(&key.name.as_str())) {
-        Some((key, _)) => Err(unknown_key(key, "", &names)),
-        None => Ok(()),
-    }
 }

@@ -1,7 +1,9 @@
 //! What may be tightened at what cost, and which design values may move: `cost` of an input, `[trade]`
 //! and `[tighten]` of a study.
 
+use super::Known;
 use super::document::{Node, Value};
+use super::mistakes::Mistakes;
 use super::read::{self, Section};
 use super::sections::design_entries;
 use super::values::{check_surface, possible_range, written};
@@ -30,9 +32,14 @@ pub enum TighteningCost {
     None,
 }
 
-impl Default for TighteningCost {
-    fn default() -> Self {
-        TighteningCost::PerHalving(1.0)
+impl TighteningCost {
+    /// The cost of an input of which none is stated: one for each halving, and none at all of what nobody sells. The
+    /// weather of the day and the error of the model itself are no tolerances.
+    pub fn usual(parameter: Parameter, known: Known) -> Self {
+        match known == Known::OnTheDay || parameter == Parameter::FluidAveragingOffset {
+            true => TighteningCost::None,
+            false => TighteningCost::PerHalving(1.0),
+        }
     }
 }
 
@@ -96,7 +103,7 @@ pub(super) fn cost(node: &Node) -> Result<TighteningCost> {
         }
         other => {
             let problem = match other {
-                Value::String(text) => format!("the cost \"{text}\" means nothing"),
+                Value::String(text) => format!("invalid cost \"{text}\""),
                 Value::Array(_) => "the list of grades is empty".to_owned(),
                 other => format!("this is {}", other.described()),
             };
@@ -147,7 +154,9 @@ fn samples(node: &Node, or_none: bool) -> Result<u64> {
     }
     let none = if or_none { "0 (no trade) or " } else { "" };
     let expected = format!("expected {none}at least 100");
-    Err(node.place.error(format!("{count} samples tell no probability"), expected))
+    Err(node
+        .place
+        .error(format!("{count} samples are too few to estimate a probability"), expected))
 }
 
 /// `[tighten]`; without design variables, the nominal viscosity may move.
@@ -179,12 +188,15 @@ pub(super) fn tighten(node: Option<&Node>, design: &Design<f64>) -> Result<Tight
 fn design_ranges(node: &Node, design: &Design<f64>) -> Result<Vec<DesignRange>> {
     let example = "[\"90000 cSt\", \"140000 cSt\"]";
     let mut ranges = Vec::new();
-    for entry in design_entries(node)? {
+    let mut mistakes = Mistakes::default();
+    let entries = design_entries(node, &mut mistakes);
+    mistakes.none_or(Some(()))?;
+    for entry in entries {
         check_surface(entry.target, design, &entry.key)?;
         let parameter = entry.target.parameter;
         if parameter == Parameter::BrakeRotors {
-            let expected = "expected a continuous parameter: rotors are counted";
-            return Err(entry.key.place.error("brake.rotors cannot move", expected));
+            let expected = "expected a continuous parameter; the number of rotors is an integer";
+            return Err(entry.key.place.error("brake.rotors cannot be varied", expected));
         }
         let ends = match &entry.node.value {
             Value::Array(items) if items.len() == 2 => items,

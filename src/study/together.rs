@@ -1,17 +1,16 @@
 //! `[[joint]]`: inputs that are drawn together, row by row, from a file of joint samples.
 
+use super::columns::{self, Complaint, Found, name_and_unit};
 use super::document::{Key, Node, Value};
 use super::epistemic::nature;
-use super::files::{Files, SampleColumn, SampleFile};
+use super::files::{Files, SampleFile};
 use super::read::{self, Section};
 use super::values::{parameter_path, possible_range, unknown_input};
 use super::vocabulary::JOINT;
-use super::{Known, Nature, TighteningCost, tighten};
+use super::{Known, Nature, TighteningCost, pairs, tighten};
 use crate::error::{Error, Result};
 use crate::physics::design::Target;
 use crate::physics::parameters::{PARAMETERS, Parameter};
-use crate::units;
-use crate::units::spelling::nearest;
 
 const COLUMNS_EXAMPLE: &str = "{ \"fluid.shear_factor\" = \"shear_factor\" }";
 
@@ -91,8 +90,9 @@ fn read_one(statement: &Node, files: &mut dyn Files) -> Result<Together> {
     if let Some(node) = section.get("sha256") {
         let stated = read::string(node, "the SHA-256 of the file, in hexadecimal")?;
         if !stated.trim().eq_ignore_ascii_case(&content.sha256) {
-            let problem = format!("{name} is another file: its SHA-256 is {}", content.sha256);
-            let help = "if the new content is meant, state its SHA-256".to_owned();
+            let problem =
+                format!("{name} does not match the stated SHA-256; its own is {}", content.sha256);
+            let help = "if the new content is intended, state its SHA-256".to_owned();
             let expected = "expected the file that the card was written for";
             return Err(node.place.error_with(problem, expected, Some(help)));
         }
@@ -102,9 +102,10 @@ fn read_one(statement: &Node, files: &mut dyn Files) -> Result<Together> {
         None => by_path(file, name, &content)?,
     };
     let mut members = Vec::with_capacity(chosen.len());
-    for Chosen { target, column, unit, place } in chosen {
-        let values = in_si(target, column, unit)
-            .map_err(|(found, expected)| place.error(format!("{name}: {found}"), expected))?;
+    for Chosen { target, found, place } in chosen {
+        let values = values(target, found).map_err(|wrong| {
+            place.error_with(format!("{name}: {}", wrong.problem), wrong.expected, wrong.help)
+        })?;
         members.push((target, values));
     }
     members.sort_by_key(|(target, _)| *target);
@@ -115,7 +116,7 @@ fn read_one(statement: &Node, files: &mut dyn Files) -> Result<Together> {
     }
     let known_names = Known::ALL.map(Known::name);
     let known = section.require("known", "\"never\": when the values become known")?;
-    let known = read::choice(known, "time of knowledge", &known_names, Known::from_name)?;
+    let known = read::choice(known, "value of `known`", &known_names, Known::from_name)?;
     let nature = match section.get("nature") {
         Some(node) => nature(node)?,
         None => Nature::default_of(known, false),
@@ -123,10 +124,16 @@ fn read_one(statement: &Node, files: &mut dyn Files) -> Result<Together> {
     let source = section.require("source", "\"…\": where the sample comes from")?;
     let source = read::string(source, "where the sample comes from")?.trim().to_owned();
     let group = match section.get("group") {
-        Some(node) => read::string(node, "the name of a group")?.trim().to_owned(),
+        Some(node) => pairs::group(node, None)?,
         None => format!("joint sample of {} parameters ({name})", members.len()),
     };
-    let cost = section.get("cost").map_or(Ok(TighteningCost::default()), tighten::cost)?;
+    // They are bought together: all of them, or nothing.
+    let usual = members
+        .iter()
+        .map(|(target, _)| TighteningCost::usual(target.parameter, known))
+        .find(|cost| *cost != TighteningCost::None)
+        .unwrap_or(TighteningCost::None);
+    let cost = section.get("cost").map_or(Ok(usual), tighten::cost)?;
     let key = Key { name: name.to_owned(), place: file.place.clone() };
     let (file, sha256) = (name.to_owned(), content.sha256);
     Ok(Together { members, known, nature, source, group, cost, file, sha256, unused, key })
@@ -135,26 +142,13 @@ fn read_one(statement: &Node, files: &mut dyn Files) -> Result<Together> {
 /// A column that an input is drawn from.
 struct Chosen<'f> {
     target: Target,
-    column: &'f SampleColumn,
-    unit: Option<&'f str>,
+    found: Found<'f>,
     place: super::place::Place,
-}
-
-/// "fluid.shear_factor [m²/s]" is a name and a unit; without a unit the numbers are SI.
-fn name_and_unit(header: &str) -> (&str, Option<&str>) {
-    let inside = header.trim().strip_suffix(']').and_then(|rest| rest.rsplit_once('['));
-    match inside {
-        // brake.gap[3] is a path, not a unit.
-        Some((name, unit)) if !unit.bytes().all(|byte| byte.is_ascii_digit()) => {
-            (name.trim(), Some(unit.trim()))
-        }
-        _ => (header.trim(), None),
-    }
 }
 
 /// The columns that the card names for each input.
 fn named<'f>(
-    node: &Node,
+    node: &'f Node,
     file: &Node,
     name: &str,
     content: &'f SampleFile,
@@ -179,27 +173,15 @@ fn named<'f>(
                 return Err(key.place.error(problem, "expected each input once"));
             }
             let wanted = read::string(child, "the name of a column")?.trim();
-            let column = content
-                .columns
-                .iter()
-                .find(|(header, _)| header == wanted)
-                .or_else(|| content.columns.iter().find(|(h, _)| name_and_unit(h).0 == wanted));
-            let Some(column) = column else {
-                let headers = content.columns.iter().map(|(header, _)| header.as_str());
-                let help = nearest(wanted, headers.clone())
-                    .map(|near| format!("did you mean \"{near}\"?"));
-                let all: Vec<&str> = headers.take(12).collect();
-                let expected = format!("expected one of its columns: {}", all.join(", "));
-                let problem = format!("{name} has no column \"{wanted}\"");
-                return Err(child.place.error_with(problem, expected, help));
-            };
-            let unit = name_and_unit(&column.0).1;
-            chosen.push(Chosen { target, column, unit, place: child.place.clone() });
+            let found = columns::find(name, &content.columns, wanted).map_err(|wrong| {
+                child.place.error_with(wrong.problem, wrong.expected, wrong.help)
+            })?;
+            chosen.push(Chosen { target, found, place: child.place.clone() });
         }
     }
     if chosen.is_empty() {
         let expected = format!("expected columns = {COLUMNS_EXAMPLE}, or no such key");
-        return Err(file.place.error("no column is drawn from", expected));
+        return Err(file.place.error("`columns` is empty", expected));
     }
     Ok(chosen)
 }
@@ -225,7 +207,7 @@ fn by_path<'f>(
             let problem = format!("{name} has two columns of {}", target.path());
             return Err(file.place.error(problem, "expected each input once"));
         }
-        chosen.push(Chosen { target, column, unit, place: file.place.clone() });
+        chosen.push(Chosen { target, found: Found { column, unit }, place: file.place.clone() });
     }
     if chosen.is_empty() {
         let problem = format!("no column of {name} is named like an input");
@@ -250,45 +232,30 @@ fn column_target(name: &str) -> Option<Target> {
 
 fn check_continuous(target: Target, key: &Key) -> Result<()> {
     if target.parameter == Parameter::BrakeRotors {
-        let expected = "expected a continuous parameter: rotors are counted";
+        let expected = "expected a continuous parameter; the number of rotors is an integer";
         return Err(key.place.error("brake.rotors cannot be uncertain", expected));
     }
     Ok(())
 }
 
-/// The numbers of a column in SI, or what was found instead and what was expected.
-fn in_si(
-    target: Target,
-    column: &SampleColumn,
-    unit: Option<&str>,
-) -> std::result::Result<Vec<f64>, (String, String)> {
+/// The numbers of a column in SI, each possible for the input.
+fn values(target: Target, found: Found<'_>) -> std::result::Result<Vec<f64>, Complaint> {
     let info = target.parameter.info();
-    let (header, values) = column;
-    let values = values.as_ref().map_err(|reason| {
-        let expected = "expected a finite number in every row of the column";
-        (format!("column \"{header}\": {reason}"), expected.to_owned())
-    })?;
-    let mut converted = Vec::with_capacity(values.len());
-    for (row, &value) in values.iter().enumerate() {
-        let si = match unit.filter(|unit| !unit.is_empty() && *unit != "1" && *unit != "-") {
-            None => value,
-            Some(unit) => {
-                units::parse(&format!("{value} {unit}"), info.quantity).map_err(|error| {
-                    (format!("column \"{header}\": {}", error.problem), error.expected)
-                })?
-            }
-        };
-        if !info.admits(si) {
-            let found = format!(
-                "row {} of column \"{header}\" is {value}, which is impossible for {}",
+    let values = columns::in_si(found, info.quantity)?;
+    match values.iter().position(|value| !info.admits(*value)) {
+        None => Ok(values),
+        Some(row) => {
+            let header = &found.column.0;
+            let written = found.column.1.as_ref().ok().and_then(|values| values.get(row));
+            let problem = format!(
+                "row {} of column \"{header}\" is {}, which is impossible for {}",
                 row + 1,
+                written.copied().unwrap_or(f64::NAN),
                 target.path()
             );
-            return Err((found, possible_range(target.parameter)));
+            Err(Complaint { problem, expected: possible_range(target.parameter), help: None })
         }
-        converted.push(si);
     }
-    Ok(converted)
 }
 
 /// The correlation of an input that is drawn together with others.
@@ -302,14 +269,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn property_headers_name_inputs_and_units() {
-        assert_eq!(
-            name_and_unit("thermal.fluid_capacity [J/K]"),
-            ("thermal.fluid_capacity", Some("J/K"))
-        );
-        assert_eq!(name_and_unit("brake.gap[3]"), ("brake.gap[3]", None));
-        assert_eq!(name_and_unit("brake.gap[3] [in]"), ("brake.gap[3]", Some("in")));
-        assert_eq!(name_and_unit("fluid.shear_factor"), ("fluid.shear_factor", None));
+    fn property_headers_name_inputs() {
         assert_eq!(column_target("brake_gap_3_m"), Some(Target::gap(2)));
         assert_eq!(column_target("brake_gap_0_m"), None);
         let capacity = Target::whole(Parameter::from_path("thermal.fluid_capacity").unwrap());

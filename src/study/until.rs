@@ -30,26 +30,24 @@ pub(super) fn until(
 ) -> Result<()> {
     let section = Section::new("until", &node.place, read::table(node, EXAMPLE)?, keys::UNTIL)?;
     if plan.design != sampling::Design::MonteCarlo {
-        let problem = format!("`until` does not go with the design \"{}\"", plan.design.name());
-        let help = "its points are not independent, and an interval that holds at every look needs \
-                    independent ones";
+        let problem = format!("`until` cannot be used with the design \"{}\"", plan.design.name());
+        let help =
+            "its points are dependent; sequential confidence intervals need independent samples";
         let expected = "expected the design \"monte-carlo\"";
         return Err(node.place.error_with(problem, expected, Some(help.to_owned())));
     }
     if let Some(samples) = samples {
-        let help = "the most samples that may be drawn are the budget of `until`";
+        let help = "the maximum number of samples is the budget of `until`";
         let expected = "expected samples or until, not both";
         return Err(samples.place.error_with(
-            "`until` decides the number of samples",
+            "`samples` and `until` are both given",
             expected,
             Some(help.to_owned()),
         ));
     }
     if !has_limits {
         let expected = "expected at least one limit, such as [limits] time = { max = \"210 s\" }";
-        return Err(node
-            .place
-            .error("`until` without limits has no probability to wait for", expected));
+        return Err(node.place.error("`until` needs at least one limit", expected));
     }
     let until = rule(node, &section, requirement)?;
     let confidence = match (section.get("confidence"), requirement) {
@@ -57,7 +55,8 @@ pub(super) fn until(
         (None, Some(requirement)) => requirement.confidence,
         (None, None) => {
             let problem = "`until` lacks the key `confidence`";
-            let help = "a study with a requirement may leave it out: its confidence is taken";
+            let help =
+                "it may be omitted in a study with a requirement, whose confidence is then used";
             return Err(node.place.error_with(
                 problem,
                 "expected confidence = 0.9",
@@ -69,7 +68,7 @@ pub(super) fn until(
         (until, requirement, section.get("confidence"))
         && confidence < requirement.confidence
     {
-        let problem = format!("a confidence of {confidence} does not decide the requirement");
+        let problem = format!("confidence {confidence} is below the requirement's");
         let expected =
             format!("expected at least the requirement's confidence, {}", requirement.confidence);
         return Err(stated.place.error(problem, expected));
@@ -84,19 +83,19 @@ pub(super) fn until(
 fn rule(node: &Node, section: &Section, requirement: Option<Requirement>) -> Result<Until> {
     let expected = "expected relative_error = 0.05 or decided = true";
     match (section.get("relative_error"), section.get("decided")) {
-        (None, None) => Err(node.place.error("`until` does not say what to wait for", expected)),
+        (None, None) => Err(node.place.error("`until` has no stopping rule", expected)),
         (Some(_), Some(second)) => {
-            Err(second.place.error("`until` waits for one thing, and two are stated", expected))
+            Err(second.place.error("`until` has two stopping rules", expected))
         }
         (Some(node), None) => {
             Ok(Until::RelativeError(read::open_share(node, "relative_error", "0.05")?))
         }
         (None, Some(node)) => match (read::boolean(node)?, requirement) {
             (false, _) => {
-                Err(node.place.error("`decided = false` does not say what to wait for", expected))
+                Err(node.place.error("`decided = false` is not a stopping rule", expected))
             }
             (true, None) => Err(node.place.error(
-                "there is no requirement to decide",
+                "`decided` needs a requirement",
                 "expected a section [requirement], or relative_error = 0.05",
             )),
             (true, Some(stated)) => Ok(Until::Decided { allowed: 1.0 - stated.reliability }),

@@ -52,6 +52,9 @@ pub fn display(quantity: Quantity) -> DisplayUnit {
         Quantity::Area => scaled("m²", 1.0),
         Quantity::HeatCapacity => scaled("J/K", 1.0),
         Quantity::Conductance => scaled("W/K", 1.0),
+        Quantity::Conductivity => scaled("W/m/K", 1.0),
+        Quantity::VolumetricHeatCapacity => scaled("MJ/m³/K", 1e-6),
+        Quantity::Expansion => scaled("1/K", 1.0),
     }
 }
 

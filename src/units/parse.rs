@@ -1,9 +1,8 @@
 //! Reading "0.062 in" into SI.
 
 use super::Quantity;
-use super::display::{System, format_engineering};
 use super::spelling::nearest;
-use super::table::{Dimension, UNITS, Unit, dimension_name};
+use super::table::{DYNAMIC_VISCOSITY, Dimension, FORCE, MASS, RATE, UNITS, Unit, dimension_name};
 use std::ops::Range;
 
 /// Why a text is not a value of the quantity that was expected.
@@ -19,40 +18,43 @@ pub struct UnitError {
     pub help: Option<String>,
 }
 
-/// Kelvin below which a bare number is no temperature that was meant: colder than any air on Earth.
-const COLDEST_K: f64 = 150.0;
-
-/// Takes a number without a unit as SI, unless it cannot have been meant so: a bare 40 for a temperature would
-/// be 40 K. `written` is the number as its text stands.
+/// Takes a number without a unit, which only a pure number is. `written` is the number as its text stands.
 ///
 /// # Errors
-/// A temperature below 150 K, with how to write it.
+/// A quantity with a dimension, with how to write it: also 0, which is three different temperatures.
 pub fn bare(value: f64, written: &str, quantity: Quantity) -> Result<f64, UnitError> {
-    if quantity != Quantity::Temperature || value.is_nan() || value >= COLDEST_K {
-        return Ok(value);
+    match quantity {
+        Quantity::Number => Ok(value),
+        _ => Err(without_unit(written, 0..written.len(), quantity)),
     }
-    let meant = System::UsCustomary;
-    Err(UnitError {
-        span: 0..written.len(),
-        problem: format!(
-            "{written} without a unit is {written} K, which is {}",
-            format_engineering(value, quantity, meant, 4)
-        ),
+}
+
+/// The error of a number whose unit is missing.
+fn without_unit(written: &str, span: Range<usize>, quantity: Quantity) -> UnitError {
+    let units = quantity.usual_units();
+    let choices: Vec<String> =
+        units.iter().map(|unit| format!("\"{} {unit}\"", written.trim())).collect();
+    let choices = match choices.as_slice() {
+        [all @ .., last] if !all.is_empty() => format!("{} or {last}", all.join(", ")),
+        few => few.join(""),
+    };
+    UnitError {
+        span,
+        problem: format!("{} has no unit", written.trim()),
         expected: format!(
-            "expected a temperature with its unit, such as \"{}\"",
+            "expected {} with its unit, such as \"{}\"",
+            quantity.described(),
             quantity.example()
         ),
-        help: Some(format!(
-            "a bare number is in SI units; write \"{written} °F\", \"{written} °C\" or, if it is meant, \
-             \"{written} K\""
-        )),
-    })
+        help: Some(format!("write {choices}")),
+    }
 }
 
 /// Reads a number with its unit, in SI: `parse("0.062 in", Quantity::Length)` is 0.0015748.
 ///
-/// Units multiply (`·`, `*`, a space), divide (`/`) and are raised to whole powers (`²`, `^2`,
-/// `**2`). A point on a temperature scale takes the scale's zero into account, a difference and a
+/// Units multiply (`·`, `*`, a space, a hyphen), divide (`/`) and are raised to whole powers (`²`, `2`,
+/// `^2`, `**2`). What follows a `/` up to the next `·`, `*` or space is divided by: of hyphens, and of what
+/// stands in parentheses, all. A point on a temperature scale takes the scale's zero into account, a difference and a
 /// unit inside a product do not. Only a pure number needs no unit.
 ///
 /// # Errors
@@ -160,43 +162,113 @@ impl Reader<'_> {
 
     fn factors(&self, start: usize) -> Result<Vec<Factor>, UnitError> {
         let text = self.text;
-        let mut factors = Vec::new();
+        let mut factors: Vec<Factor> = Vec::new();
         let mut at = start;
         let mut sign = 1i8;
         // True where a unit must follow: after an operator.
         let mut pending: Option<usize> = None;
+        // Where a denominator in parentheses began.
+        let mut open: Option<usize> = None;
         loop {
             at += text[at..].len() - text[at..].trim_start().len();
             let Some(character) = text[at..].chars().next() else { break };
             let power_mark = text[at..].starts_with("**") || character == '^';
-            if matches!(character, '·' | '⋅' | '*' | '/') && !power_mark {
+            let hyphen =
+                matches!(character, '-' | '‐' | '‑') && self.is_name(at + character.len_utf8());
+            if (matches!(character, '·' | '⋅' | '∙' | '•' | '*' | '/') || hyphen) && !power_mark
+            {
                 // "1/s" has no unit before its operator; "/s" after nothing but a number neither.
                 if pending.is_some() || factors.is_empty() && character != '/' {
                     let problem = format!("`{character}` has no unit before it");
                     return Err(self.error(at..at + character.len_utf8(), problem, None));
                 }
-                sign = if character == '/' { -1 } else { 1 };
+                if character == '/' && open.is_some() {
+                    let problem = "a `/` inside parentheses is ambiguous".to_owned();
+                    return Err(self.error(at..at + 1, problem, None));
+                }
+                sign = match character {
+                    '/' => -1,
+                    // A hyphen joins what belongs together: BTU/h-°F.
+                    _ if hyphen => factors.last().map_or(1, |last| last.power.signum()),
+                    _ => 1,
+                };
                 pending = Some(at);
                 at += character.len_utf8();
                 continue;
             }
-            let name_end = text[at..]
-                .char_indices()
-                .find(|&(_, c)| !is_unit_character(c))
-                .map_or(text.len(), |(offset, _)| at + offset);
-            let name_span = at..name_end.max(at + character.len_utf8());
-            let unit = self.unit(name_span.clone())?;
-            at = name_span.end;
+            if character == '(' && open.is_none() && pending.is_some() && sign == -1 {
+                open = Some(at);
+                at += 1;
+                continue;
+            }
+            if character == ')' && open.is_some() && pending.is_none() {
+                open = None;
+                at += 1;
+                continue;
+            }
+            let (unit, end) = self.unit_at(at)?;
+            let name_start = at;
+            at = end;
             let power = self.power(&mut at)?;
-            factors.push(Factor { unit, power: sign * power, span: name_span.start..at });
+            let sign_here = if open.is_some() { -1 } else { sign };
+            factors.push(Factor { unit, power: sign_here * power, span: name_start..at });
             sign = 1;
             pending = None;
         }
-        if let Some(operator) = pending {
-            let problem = "a unit is missing after the operator".to_owned();
+        if let Some(operator) = pending.or(open) {
+            let problem = match open {
+                Some(_) => "a parenthesis is not closed".to_owned(),
+                None => "a unit is missing after the operator".to_owned(),
+            };
             return Err(self.error(operator..text.trim_end().len(), problem, None));
         }
         Ok(factors)
+    }
+
+    /// Whether a unit's name begins at `at`.
+    fn is_name(&self, at: usize) -> bool {
+        self.text.get(at..).unwrap_or("").chars().next().is_some_and(is_unit_character)
+    }
+
+    /// Where the name that begins at `at` ends.
+    fn name_end(&self, at: usize) -> usize {
+        let rest = self.text.get(at..).unwrap_or("");
+        let end = rest.char_indices().find(|&(_, c)| !is_unit_character(c));
+        end.map_or(self.text.len(), |(offset, _)| at + offset)
+    }
+
+    /// The unit whose name begins at `at`, and where it ends; also "pound-force" and "deg F".
+    fn unit_at(&self, at: usize) -> Result<(&'static Unit, usize), UnitError> {
+        let first = self.text[at..].chars().next().map_or(0, char::len_utf8);
+        let end = self.name_end(at).max(at + first);
+        let rest = self.text.get(end..).unwrap_or("");
+        let blank = rest.len() - rest.trim_start().len();
+        let join = match rest.strip_prefix('-') {
+            Some(_) => Some((end + 1, "-")),
+            None if blank > 0 => Some((end + blank, "")),
+            None => None,
+        };
+        if let Some((next, between)) = join {
+            let last = self.name_end(next);
+            let degree = match self.text.get(at..end) {
+                Some("deg" | "degree" | "degrees" | "°" | "º") => "°",
+                _ if between.is_empty() => "?",
+                Some(other) => other,
+                None => "?",
+            };
+            let joined = format!("{degree}{between}{}", self.text.get(next..last).unwrap_or(""));
+            let name = match joined.as_str() {
+                "°Fahrenheit" => "Fahrenheit",
+                "°Celsius" => "Celsius",
+                "°Rankine" => "Rankine",
+                other => other,
+            };
+            let found = UNITS.iter().find(|unit| unit.names.contains(&name));
+            if let (Some(unit), true) = (found, last > next) {
+                return Ok((unit, last));
+            }
+        }
+        Ok((self.unit(at..end)?, end))
     }
 
     fn unit(&self, span: Range<usize>) -> Result<&'static Unit, UnitError> {
@@ -226,6 +298,11 @@ impl Reader<'_> {
     fn power(&self, at: &mut usize) -> Result<i8, UnitError> {
         let start = *at;
         let rest = &self.text[start..];
+        let minus = usize::from(rest.starts_with('-'));
+        let plain = match rest[minus..].bytes().take_while(u8::is_ascii_digit).count() {
+            0 => 0,
+            digits => digits + minus,
+        };
         let marked = rest.strip_prefix("**").or_else(|| rest.strip_prefix('^'));
         let (digits, length) = match marked {
             Some(after) => {
@@ -233,6 +310,8 @@ impl Reader<'_> {
                 let digits = after[sign..].bytes().take_while(u8::is_ascii_digit).count() + sign;
                 (after[..digits].to_owned(), rest.len() - after.len() + digits)
             }
+            // m2, s-1: as it is typed where there is no raised digit.
+            None if plain > 0 => (rest[..plain].to_owned(), plain),
             None => {
                 let raised: String = rest.chars().map_while(superscript).collect();
                 let length = rest.chars().take(raised.chars().count()).map(char::len_utf8).sum();
@@ -275,15 +354,12 @@ impl Reader<'_> {
             }
         };
         if factors.is_empty() && self.quantity != Quantity::Number {
-            let problem = format!("\"{}\" has no unit", self.text.trim());
-            let help =
-                format!("add a unit, or write a bare number in SI: {}", self.quantity.si_unit());
-            return Err(self.error(span, problem, Some(help)));
+            return Err(without_unit(self.text, span, self.quantity));
         }
         if dimension != self.quantity.dimension() {
             let units = &self.text[span.clone()];
             let problem = format!("`{units}` is a unit of {}", dimension_name(dimension));
-            return Err(self.error(span, problem, self.confusion(units)));
+            return Err(self.error(span, problem, self.confusion(units, dimension)));
         }
         let zero = match factors {
             [only] if self.quantity == Quantity::Temperature => only.unit.zero,
@@ -301,19 +377,20 @@ impl Reader<'_> {
     }
 
     /// The unit that was probably meant, for the usual confusions.
-    fn confusion(&self, units: &str) -> Option<String> {
-        let help = match (self.quantity, units) {
-            (Quantity::Force, "lb" | "lbm" | "lbs") => "lb is a mass; write lbf",
-            (Quantity::Force, "kg" | "g" | "t") => "kg is a mass; write N or kgf",
-            (Quantity::Mass, "lbf") => "lbf is a force; write lb",
-            (Quantity::Mass, "kgf" | "N" | "kN") => "that is a weight; write kg",
-            (Quantity::KinematicViscosity, "cP" | "P") => {
-                "that is the dynamic viscosity; divide by the density and write cSt"
+    fn confusion(&self, units: &str, dimension: Dimension) -> Option<String> {
+        Some(match (self.quantity, dimension) {
+            (Quantity::Force, MASS) if units.contains("lb") || units.contains("pound") => {
+                format!("{units} is a mass; write lbf")
             }
-            (Quantity::Speed, "rpm") => "write ft/s or m/s",
+            (Quantity::Force, MASS) => format!("{units} is a mass; write N or kgf"),
+            (Quantity::Mass, FORCE) if units == "lbf" => "lbf is a force; write lb".to_owned(),
+            (Quantity::Mass, FORCE) => format!("{units} is a weight; write kg or lb"),
+            (Quantity::KinematicViscosity, DYNAMIC_VISCOSITY) => {
+                "that is the dynamic viscosity; divide by the density and write cSt".to_owned()
+            }
+            (Quantity::Speed, RATE) => "write ft/s or m/s".to_owned(),
             _ => return None,
-        };
-        Some(help.to_owned())
+        })
     }
 }
 

@@ -35,6 +35,12 @@ pub enum Quantity {
     HeatCapacity,
     /// Thermal conductance, W/K.
     Conductance,
+    /// Thermal conductivity, W/m/K.
+    Conductivity,
+    /// Heat capacity by volume, J/m³/K.
+    VolumetricHeatCapacity,
+    /// Thermal expansion, 1/K.
+    Expansion,
 }
 
 impl Quantity {
@@ -56,6 +62,9 @@ impl Quantity {
             Quantity::Area => "m²",
             Quantity::HeatCapacity => "J/K",
             Quantity::Conductance => "W/K",
+            Quantity::Conductivity => "W/m/K",
+            Quantity::VolumetricHeatCapacity => "J/m³/K",
+            Quantity::Expansion => "1/K",
         }
     }
 
@@ -77,6 +86,9 @@ impl Quantity {
             Quantity::Area => "_m2",
             Quantity::HeatCapacity => "_j_per_k",
             Quantity::Conductance => "_w_per_k",
+            Quantity::Conductivity => "_w_per_m_k",
+            Quantity::VolumetricHeatCapacity => "_j_per_m3_k",
+            Quantity::Expansion => "_per_k",
         }
     }
 
@@ -89,7 +101,7 @@ impl Quantity {
     }
 
     /// All kinds.
-    pub const ALL: [Quantity; 16] = [
+    pub const ALL: [Quantity; 19] = [
         Quantity::Number,
         Quantity::Length,
         Quantity::Time,
@@ -106,6 +118,9 @@ impl Quantity {
         Quantity::Area,
         Quantity::HeatCapacity,
         Quantity::Conductance,
+        Quantity::Conductivity,
+        Quantity::VolumetricHeatCapacity,
+        Quantity::Expansion,
     ];
 
     /// The kind, with its article, as a sentence needs it: "a length".
@@ -127,6 +142,33 @@ impl Quantity {
             Quantity::Area => "an area",
             Quantity::HeatCapacity => "a heat capacity",
             Quantity::Conductance => "a thermal conductance",
+            Quantity::Conductivity => "a thermal conductivity",
+            Quantity::VolumetricHeatCapacity => "a heat capacity by volume",
+            Quantity::Expansion => "a thermal expansion",
+        }
+    }
+
+    /// Units in which an engineer writes it, the usual one first and an SI one among them.
+    pub fn usual_units(self) -> &'static [&'static str] {
+        match self {
+            Quantity::Number => &[],
+            Quantity::Length => &["in", "mm", "m"],
+            Quantity::Time => &["s", "min"],
+            Quantity::Temperature | Quantity::TemperatureDifference => &["°F", "°C", "K"],
+            Quantity::Speed => &["ft/s", "m/s"],
+            Quantity::RotationalSpeed => &["rpm", "rad/s"],
+            Quantity::KinematicViscosity => &["cSt", "m²/s"],
+            Quantity::Density => &["kg/m³", "lb/ft³"],
+            Quantity::Mass => &["kg", "lb"],
+            Quantity::Force => &["lbf", "N"],
+            Quantity::Power => &["kW", "hp", "W"],
+            Quantity::Inertia => &["kg·m²", "slug·ft²"],
+            Quantity::Area => &["m²", "ft²"],
+            Quantity::HeatCapacity => &["J/K", "BTU/°F"],
+            Quantity::Conductance => &["W/K", "BTU/h/°F"],
+            Quantity::Conductivity => &["W/m/K"],
+            Quantity::VolumetricHeatCapacity => &["MJ/m³/K"],
+            Quantity::Expansion => &["%/K", "K⁻¹"],
         }
     }
 
@@ -149,6 +191,9 @@ impl Quantity {
             Quantity::Area => "500 m²",
             Quantity::HeatCapacity => "3990 J/K",
             Quantity::Conductance => "680 W/K",
+            Quantity::Conductivity => "0.16 W/m/K",
+            Quantity::VolumetricHeatCapacity => "3.6 MJ/m³/K",
+            Quantity::Expansion => "0.095 %/K",
         }
     }
 }

@@ -51,6 +51,7 @@ pub fn instruments() -> [Instrument; 5] {
     let instrument = |channel, sensor_sd, discrepancy_sd, unit, step| Instrument {
         channel,
         noise: Noise { sensor_sd, discrepancy_sd, correlation_time_s: 40.0 },
+        systematic: (0.0, 0.0),
         unit,
         step,
     };
@@ -83,14 +84,21 @@ pub fn schedules() -> [(&'static str, Schedule); 4] {
 
 /// Name and text of every run.
 pub fn runs(seed: u64) -> Result<Vec<(&'static str, String)>> {
-    let truth = truth();
-    let instruments = instruments();
+    runs_of(&truth(), &instruments(), seed)
+}
+
+/// The same of another brake, by instruments that err otherwise.
+pub fn runs_of(
+    truth: &Design,
+    instruments: &[Instrument],
+    seed: u64,
+) -> Result<Vec<(&'static str, String)>> {
     schedules()
         .into_iter()
         .enumerate()
         .map(|(k, (name, schedule))| {
             let key = (seed, k as u64);
-            Ok((name, run(&truth, &schedule, &instruments, Drive::Force, key)?))
+            Ok((name, run(truth, &schedule, instruments, Drive::Force, key)?))
         })
         .collect()
 }

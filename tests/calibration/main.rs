@@ -1,6 +1,7 @@
 //! Calibration against answers that are known.
 
 mod campaign;
+mod consistency;
 mod linear;
 mod noise;
 mod planning;

@@ -58,7 +58,8 @@ pub fn problem(study: &Study) -> RigLikelihood<'_> {
             )),
         })
         .to_vec();
-    RigLikelihood::new(study, planned, noise)
+    let systematic = plan::systematic(&planned, &options);
+    RigLikelihood::new(study, planned, systematic, noise)
 }
 
 /// Repetition `k`: a truth from the prior, data from the truth, a posterior from the data by `plan`.
@@ -93,8 +94,7 @@ pub fn of_campaign(study: &Study, k: u64) -> Repetition {
     let options = Options::default();
     let planned = plan::planned(&runs.iter().collect::<Vec<_>>(), study, &options)
         .expect("runs that can be compared");
-    let noise = plan::noise(&planned, &options);
-    let likelihood = RigLikelihood::new(study, planned, noise);
+    let likelihood = RigLikelihood::of_runs(study, planned, &options);
     let posterior = sample(&likelihood, &small_plan(k)).expect("a posterior");
     let design = campaign::truth();
     let values: Vec<f64> = study.inputs.iter().map(|input| design.at(input.target)).collect();

@@ -3,9 +3,10 @@
 use crate::campaign;
 use crate::repetitions::{chi_squared, from_prior, of_campaign, problem, small_plan};
 use reeldown::calibration::{LeastSquares, LogLikelihood};
+use reeldown::campaign::calibration::{Channel, Coordinate, Options, RigLikelihood, plan};
 use reeldown::numerics::columns::Columns;
 use reeldown::numerics::special::{binomial, chi_squared as chi};
-use reeldown::study::Study;
+use reeldown::study::{MeasuredRun, Study};
 
 /// Repetitions of the short form.
 const SHORT: u64 = 6;
@@ -72,4 +73,70 @@ fn regression_the_shipped_campaign_is_what_its_command_makes() {
         let shipped = std::fs::read_to_string(&path).expect("a shipped run");
         assert!(shipped == text, "{name}: run `cargo run --release --example synthetic_campaign`");
     }
+}
+
+/// A gain and an offset, taken as known, are the same as readings corrected by hand.
+#[test]
+fn analytic_an_instrument_s_errors_are_those_of_its_readings() {
+    let study = Study::load(None, &[]).expect("the embedded study");
+    let runs: Vec<MeasuredRun> = campaign::runs(campaign::SEED)
+        .expect("the campaign can be made")
+        .into_iter()
+        .map(|(name, text)| MeasuredRun::from_csv(name, &text, Default::default()).expect("a run"))
+        .collect();
+    let options = |speed_sd: f64| Options {
+        sensor_sd: vec![(Channel::Speed, speed_sd), (Channel::Fluid, 0.5), (Channel::Housing, 0.4)],
+        discrepancy: None,
+        ..Options::default()
+    };
+    let planned = |runs: &[MeasuredRun]| {
+        let all: Vec<&MeasuredRun> = runs.iter().collect();
+        plan::planned(&all, &study, &options(0.02)).expect("runs that can be compared")
+    };
+    let likelihood = RigLikelihood::of_runs(&study, planned(&runs), &options(0.02));
+    let coordinates = likelihood.coordinates();
+    let mut z: Vec<f64> = (0..coordinates.len()).map(|j| 0.1 * ((j % 5) as f64 - 2.0)).collect();
+    let mut by_hand = z.clone();
+    let mut corrected = runs.clone();
+    for (j, coordinate) in coordinates.iter().enumerate() {
+        let (k, deviations) = match *coordinate {
+            Coordinate::Gain(k) => (k, 0.8),
+            Coordinate::Offset(k) => (k, -1.3),
+            _ => continue,
+        };
+        (z[j], by_hand[j]) = (deviations, 0.0);
+        let error = likelihood.systematic()[k];
+        for run in &mut corrected {
+            let values = match error.channel {
+                Channel::Force => &mut run.force_n,
+                Channel::Speed => &mut run.speed_m_per_s,
+                Channel::Fluid => &mut run.fluid_k,
+                Channel::Housing => &mut run.housing_k,
+                other => panic!("{other:?} is not used"),
+            };
+            for value in values.as_mut().expect("the channel") {
+                match coordinate {
+                    Coordinate::Gain(_) => *value *= 1.0 + error.gain * deviations,
+                    _ => *value += error.offset * deviations,
+                }
+            }
+        }
+    }
+    let mut again = planned(&corrected);
+    for (again, run) in again.iter_mut().zip(likelihood.runs()) {
+        again.initial = run.initial;
+    }
+    // A reading's density, in place of the corrected reading's: its error is smaller by the gain, the density higher.
+    let gain = likelihood.correction(Channel::Speed, &z).gain;
+    let readings: usize = runs.iter().map(|run| run.time_s.len()).sum();
+    let without = RigLikelihood::of_runs(&study, again, &options(0.02 * gain));
+    let ln = |likelihood: &RigLikelihood<'_>, z: &[f64]| {
+        let mut value = [0.0];
+        likelihood.ln_likelihood(&Columns::from_rows(&[z]), &mut value).expect("a likelihood");
+        value[0]
+    };
+    let (with, without) =
+        (ln(&likelihood, &z), ln(&without, &by_hand) + readings as f64 * gain.ln());
+    // Sums of some thousand squares, with rounding of the corrected record.
+    assert!((with - without).abs() < 1e-9 * with.abs(), "{with} {without}");
 }

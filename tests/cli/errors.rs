@@ -2,8 +2,17 @@
 
 use super::program::{Answer, Place, reeldown};
 
-/// A study of one limit around a line to be tried.
+/// What is answered to a study and a card with one mistake.
+#[track_caller]
 fn answer(place: &Place, study: &str, card: &str) -> Answer {
+    let answer = answer_to_mistakes(place, study, card);
+    let errors = answer.err.matches("error: ").count();
+    assert_eq!(errors, 1, "one message: {}", answer.err);
+    answer
+}
+
+/// What is answered to a study and a card with mistakes.
+fn answer_to_mistakes(place: &Place, study: &str, card: &str) -> Answer {
     place.write("card.toml", card);
     let study = place.write("bad.toml", study);
     let out = place.at("run");
@@ -15,8 +24,6 @@ fn answer(place: &Place, study: &str, card: &str) -> Answer {
         let other = reeldown(&[command, &study]).ended_with(1);
         assert_eq!(other.err, answer.err, "{command}");
     }
-    let errors = answer.err.matches("error: ").count();
-    assert_eq!(errors, 1, "one message: {}", answer.err);
     answer
 }
 
@@ -49,10 +56,10 @@ fn property_a_wrong_unit_and_an_impossible_value_show_the_place() {
     let place = Place::new("values");
     let study = "title = \"x\"\ncard = \"card.toml\"\n[limits]\ntime = { max = \"210 kg\" }\n";
     assert_says(&answer(&place, study, CARD), &["bad.toml:4:21", "`kg`", "expected a time"]);
-    let study = "title = \"x\"\n[design]\n\"brake.gap\" = \"-1 mm\"\n";
-    assert_says(&answer(&place, study, CARD), &["bad.toml:3:15", "impossible", "expected"]);
-    let study = "title = \"x\"\n[design]\nbrake.inner_radius = \"20 in\"\n";
-    assert_says(&answer(&place, study, CARD), &["bad.toml:3:22", "brake.outer_radius"]);
+    let study = "title = \"x\"\ncard = \"card.toml\"\n[design]\n\"brake.gap\" = \"-1 mm\"\n";
+    assert_says(&answer(&place, study, CARD), &["bad.toml:4:15", "impossible", "expected"]);
+    let study = "title = \"x\"\ncard = \"card.toml\"\n[design]\nbrake.inner_radius = \"20 in\"\n";
+    assert_says(&answer(&place, study, CARD), &["bad.toml:4:22", "brake.outer_radius"]);
 }
 
 #[test]
@@ -123,28 +130,52 @@ fn property_a_study_without_uncertainty_says_what_to_do() {
 }
 
 #[test]
-fn regression_a_bare_temperature_that_cannot_be_meant_is_one_clear_error() {
+fn regression_a_misspelt_command_is_told_from_a_study() {
+    let answer = reeldown(&["chek"]).ended_with(1);
+    assert_says(&answer, &["no command and no study file called chek", "`reeldown check`"]);
+    let answer = reeldown(&["xyz"]).ended_with(1);
+    assert_says(&answer, &["the commands are run, descend"]);
+    // What can only be a file is one.
+    assert_says(&reeldown(&["chek.toml"]).ended_with(1), &["cannot read chek.toml: no such file"]);
+}
+
+#[test]
+fn property_all_mistakes_of_a_study_are_shown_at_once() {
+    let place = Place::new("mistakes");
+    let study = "title = \"x\"\ncard = \"card.toml\"\n[design]\nbrake.gap = 0.062\n[limits]\n\
+                 time = { max = 210 }\n[sampling]\nsampels = 5\n";
+    let parts =
+        ["bad.toml:4:13", "bad.toml:6:16", "bad.toml:8:1", "did you mean `samples`?", "3 mistakes"];
+    assert_says(&answer_to_mistakes(&place, study, CARD), &parts);
+}
+
+#[test]
+fn regression_a_number_without_its_unit_is_one_clear_error() {
     let place = Place::new("kelvin");
     let set = ["--set", "initial.temperature=40"];
     let over = ["--nominal", "--over", "initial.temperature=40..300:3"];
-    let origin = ["--set:1:21", "--over:1:21"];
+    let moved = ["--move", "fluid.nominal_viscosity=90000..140000"];
     let commands = [&["descend"][..], &["check"], &["run"], &["rig", "--force", "6000 lbf"]]
-        .map(|c| (c, &set[..]));
-    for (command, option) in commands.into_iter().chain([(&["sweep"][..], &over[..])]) {
+        .map(|c| (c, &set[..], "40", "°F"));
+    let others = [
+        (&["sweep"][..], &over[..], "300", "°F"),
+        (&["tighten"], &moved[..], "90000", "cSt"),
+        (&["rig"], &["--force", "6000"], "6000", "lbf"),
+        (&["rig", "--force", "6000 lbf"], &["--set", "limits.time.max=210"], "210", "s"),
+    ];
+    for (command, option, number, unit) in commands.into_iter().chain(others) {
         let answer = reeldown(&[command, option].concat()).ended_with(1);
-        assert!(origin.iter().any(|place| answer.err.contains(place)), "{}", answer.err);
-        let parts =
-            ["40 without a unit is 40 K, which is -387.7 °F", "with its unit", "write \"40 °F\""];
-        assert_says(&answer, &parts);
+        let parts = [format!("{number} has no unit"), format!("write \"{number} {unit}\"")];
+        assert_says(&answer, &parts.each_ref().map(String::as_str));
     }
     let study = "title = \"x\"\ncard = \"card.toml\"\n[design]\ninitial.temperature = 60\n";
-    assert_says(&answer(&place, study, CARD), &["bad.toml:4:23", "60 without a unit is 60 K"]);
+    assert_says(&answer(&place, study, CARD), &["bad.toml:4:23", "60 has no unit"]);
     let study = "title = \"x\"\ncard = \"card.toml\"\n";
     let card = CARD.replace("mean = \"60 °F\"", "mean = 60");
     assert_ne!(card, CARD);
-    assert_says(&answer(&place, study, &card), &["card.toml:", "60 without a unit is 60 K"]);
-    // What can have been meant, or is written out, is taken: a fault then says what is far from the usual.
-    reeldown(&["check", "--set", "initial.temperature=289"]).ended_with(0);
+    assert_says(&answer(&place, study, &card), &["card.toml:", "60 has no unit"]);
+    // With a unit at one end a range has that at both; what is written out is taken, and a fault then says
+    // what is far from the usual.
     let fault = reeldown(&["descend", "--set", "initial.temperature=40 K"]).ended_with(1);
     assert_says(
         &fault,

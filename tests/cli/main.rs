@@ -9,6 +9,7 @@ mod dependence;
 mod determinism;
 mod directories;
 mod disk;
+mod doors;
 mod errors;
 mod few_breaches;
 mod inspection;

@@ -35,7 +35,7 @@ fn purchases(found: &Value) -> Vec<(&str, f64)> {
 
 #[test]
 fn property_a_plan_for_one_in_a_hundred_is_demonstrated_and_no_cheaper_one_is_on_the_grid() {
-    let found = tighten(&["--target", "0.01"], 0);
+    let found = tighten(&["--target", "0.01", "--set", "initial.temperature.cost=1"], 0);
     assert_eq!(found["answer"], "go");
     assert_eq!(number(&found["target"]), 0.01);
     assert_eq!(number(&found["confidence"]), 0.9);
@@ -61,7 +61,7 @@ fn property_a_plan_for_one_in_a_hundred_is_demonstrated_and_no_cheaper_one_is_on
 
 #[test]
 fn property_what_cannot_be_bought_is_named_where_no_plan_exists() {
-    let cost = ["--set", "fluid.shear_factor.cost=none", "--set", "initial.temperature.cost=none"];
+    let cost = ["--set", "fluid.shear_factor.cost=none"];
     let held = ["--target", "0.01", "--move", "none"];
     let found = tighten(&[&cost[..], &held].concat(), 3);
     assert_eq!(found["answer"], "no_go");
@@ -73,6 +73,33 @@ fn property_what_cannot_be_bought_is_named_where_no_plan_exists() {
     assert_eq!(found["plan"]["design"], Value::Array(Vec::new()));
     assert!(number(&found["demonstration"]["lower_bound"]["lower"]) > 0.01);
     assert!(found["proof"].is_null());
+}
+
+/// Nobody sells the weather, nor a model that errs less.
+#[test]
+fn property_neither_the_weather_nor_the_model_s_error_is_bought_unless_it_has_a_price() {
+    // With everything else exact, what is left cannot be helped.
+    let costs: Vec<String> = NOTHING
+        .iter()
+        .chain(&["fluid.shear_factor"])
+        .filter(|path| **path != "fluid.averaging_offset")
+        .map(|path| format!("{path}.cost=none"))
+        .collect();
+    let set: Vec<&str> = costs.iter().flat_map(|text| ["--set", text.as_str()]).collect();
+    let held = ["--target", "0.01", "--move", "none"];
+    let found = tighten(&[&set[..], &held].concat(), 3);
+    assert!(purchases(&found).is_empty(), "{}", found["plan"]);
+    assert_eq!(number(&found["plan"]["cost"]), 0.0);
+    // With a price they are for sale.
+    let priced = [
+        &set[..],
+        &["--set", "initial.temperature.cost=3", "--set", "fluid.averaging_offset.cost=1"],
+        &held,
+    ]
+    .concat();
+    let found = reeldown(&[&["tighten", "--json"], QUICK, &priced].concat()).json();
+    let bought: Vec<&str> = purchases(&found).into_iter().map(|(name, _)| name).collect();
+    assert!(bought.contains(&"initial.temperature"), "{bought:?}");
 }
 
 #[test]
@@ -151,7 +178,7 @@ fn property_bad_arguments_are_refused_with_what_would_do() {
         (&["--move", "fluid.nominal_viscosity=1 cSt"], "PATH=LEAST..MOST"),
         (&["--move", "fluid.viscosity=1 cSt..2 cSt"], "unknown design key `fluid.viscosity`"),
         (&["--move", "fluid.nominal_viscosity=140000..90000 cSt"], "is empty"),
-        (&["--move", "brake.rotors=5..9"], "brake.rotors cannot move"),
+        (&["--move", "brake.rotors=5..9"], "brake.rotors cannot be varied"),
         (&["--move", "none", "--move", "brake.gap=0.06 in..0.07 in"], "nothing beside it"),
     ];
     for (arguments, said) in cases {
@@ -161,5 +188,5 @@ fn property_bad_arguments_are_refused_with_what_would_do() {
     }
     let unlimited = ["tighten", "--set", "fluid.shear_factor.cost=cheap"];
     let answer = reeldown(&unlimited).ended_with(1);
-    assert!(answer.err.contains("the cost \"cheap\" means nothing"), "{}", answer.err);
+    assert!(answer.err.contains("invalid cost \"cheap\""), "{}", answer.err);
 }

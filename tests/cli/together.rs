@@ -76,7 +76,7 @@ fn property_csv_with_units_is_the_same_sample_in_si() {
     write(
         &place,
         "si.csv",
-        "thermal.fluid_capacity,initial.temperature\n4000,288.15\n3900,290.15\n4100,280.15\n",
+        "thermal.fluid_capacity [J/K],initial.temperature [K]\n4000,288.15\n3900,290.15\n4100,280.15\n",
     );
     write(
         &place,
@@ -92,7 +92,11 @@ fn property_csv_with_units_is_the_same_sample_in_si() {
     // A digest of the file that is not its own.
     write(&place, "card.toml", &format!("{}sha256 = \"{}\"\n", card("si.csv"), "0".repeat(64)));
     let refused = reeldown(&["check", &place.at("study.toml")]).ended_with(1);
-    assert!(refused.err.contains("si.csv is another file: its SHA-256 is "), "{}", refused.err);
+    assert!(
+        refused.err.contains("si.csv does not match the stated SHA-256; its own is "),
+        "{}",
+        refused.err
+    );
 }
 
 #[test]
@@ -186,8 +190,8 @@ fn regression_a_row_without_a_number_names_file_column_row_and_what_was_expected
     for (file, found) in [
         ("text.csv", "line 3: \"thin\" is not a finite number"),
         ("empty.csv", "line 4: \"\" is not a finite number"),
-        ("null.parquet", "row 3 of column fluid.shear_factor is null"),
-        ("text.parquet", "it holds no numbers"),
+        ("null.parquet", "column \"fluid.shear_factor\": row 3 is null"),
+        ("text.parquet", "it holds text, not numbers"),
     ] {
         let message = refused(file);
         let expected = "expected a finite number in every row of the column";

@@ -4,6 +4,7 @@ mod corpus;
 mod measured_runs;
 mod mutations;
 mod overrides;
+mod parquet_files;
 mod schema;
 mod shipped;
 mod sources;

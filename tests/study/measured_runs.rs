@@ -1,8 +1,9 @@
 //! Measured runs: what is read, and what is said about files that cannot be.
 
 use reeldown::descent::driven::Drive;
-use reeldown::store::{Field, read_number_columns, write_table};
+use reeldown::store::{Field, PARQUET, write_table};
 use reeldown::study::measured_run::{Acceptance, MeasuredRun};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 const LBF: f64 = 4.4482216152605;
 
@@ -50,7 +51,7 @@ fn property_every_mistake_is_named_with_its_line() {
         (&format!("{head}{good}3,x,1.5\n"), "run.csv:5:3: \"x\" is not a finite number"),
         (&format!("{head}{good}3,6000 lbf,1.5\n"), "run.csv:5:3: \"6000 lbf\" is not a finite"),
         (&format!("{head}{good}3,1e999,1.5\n"), "run.csv:5:3: \"1e999\" is not a finite number"),
-        (&format!("{head}{good}3,-2,1.5\n"), "run.csv:5:3: a line cannot be pushed"),
+        (&format!("{head}{good}3,-200,1.5\n"), "run.csv:5:3: a line cannot be pushed"),
         (&format!("{head}{good}2,6000,1.5\n"), "run.csv:5:1: the time 2 s is there twice"),
         (&format!("{head}{good}1.5,6000,1\n"), "run.csv:5:1: the time goes back from 2 s to 1.5 s"),
         (&format!("{head}{good}9,6000,1.5\n"), "run.csv:5:1: a gap of 7 s before this reading"),
@@ -66,6 +67,32 @@ fn property_every_mistake_is_named_with_its_line() {
     assert_eq!(MeasuredRun::from_csv("run.csv", &gap, any).unwrap().time_s.len(), 4);
 }
 
+/// A load cell at rest reads a little below zero, and a logger may change its rate: neither is a mistake.
+#[test]
+fn property_an_instrument_s_zero_and_two_logging_rates_are_no_mistakes() {
+    let rest = "time [s], force [lbf], speed [ft/s]\n0,-2,0\n1,6000,1\n2,6000,1\n";
+    let run = MeasuredRun::from_csv("run.csv", rest, Default::default()).unwrap();
+    let force = run.force_n.as_ref().unwrap();
+    assert!((force[0] + 2.0 * 4.448_221_615_260_5).abs() < 1e-12, "{}", force[0]);
+    // It drives as nothing at all.
+    assert_eq!(run.record(Drive::Force).unwrap().values()[0], 0.0);
+    let mut rates = "time [s], force [lbf]\n".to_owned();
+    let slow = (0..20).map(|k| f64::from(k) * 0.1).chain((2..40).map(f64::from));
+    slow.for_each(|time| rates += &format!("{time}, 6000\n"));
+    assert!(MeasuredRun::from_csv("run.csv", &rates, Default::default()).is_ok());
+    // The same record with ten seconds lost in its slow part, and with two in its fast one.
+    for lost in [
+        "21, 6000\n22, 6000\n23, 6000\n24, 6000\n25, 6000\n",
+        "0.5, 6000\n0.6, 6000\n0.7, 6000\n0.8, 6000\n0.9, 6000\n",
+    ] {
+        let gap = rates.replace("0.6000000000000001", "0.6").replace("0.7000000000000001", "0.7");
+        assert!(gap.contains(lost), "{gap}");
+        let gap = gap.replace(lost, "");
+        let error = MeasuredRun::from_csv("run.csv", &gap, Default::default()).unwrap_err();
+        assert!(error.to_string().contains("a gap of"), "{error}");
+    }
+}
+
 #[test]
 fn property_a_parquet_file_is_the_same_run() {
     let directory = std::env::temp_dir().join(format!("reeldown-measured-{}", std::process::id()));
@@ -79,7 +106,7 @@ fn property_a_parquet_file_is_the_same_run() {
             ("remark".to_owned(), Field::Text(vec![None, None])),
         ]
     };
-    let load = || MeasuredRun::load(&path, Acceptance::default(), read_number_columns);
+    let load = || MeasuredRun::load(&path, Acceptance::default(), PARQUET);
     write_table(&path, columns(numbers(&[6000.0 * LBF, 5000.0 * LBF])), vec![]).unwrap();
     let run = load().unwrap();
     let csv = read("time [s], force [lbf]\n0,6000\n1,5000\n").unwrap();
@@ -93,4 +120,66 @@ fn property_a_parquet_file_is_the_same_run() {
     let message = load().unwrap_err().to_string();
     assert!(message.contains("cannot read"), "{message}");
     std::fs::remove_dir_all(&directory).unwrap();
+}
+
+/// A run in a Parquet file under `name` with these columns beside `time_s` and `force_n`.
+fn parquet(name: &str, more: Vec<(&str, Field)>) -> Result<MeasuredRun, String> {
+    static CALLS: AtomicUsize = AtomicUsize::new(0);
+    let call = CALLS.fetch_add(1, Ordering::Relaxed);
+    let directory = format!("reeldown-run-{}-{call}", std::process::id());
+    let directory = std::env::temp_dir().join(directory);
+    std::fs::create_dir_all(&directory).unwrap();
+    let path = directory.join(name);
+    let numbers = |values: &[f64]| Field::Number(values.iter().map(|&v| Some(v)).collect());
+    let mut columns = vec![
+        ("time_s".to_owned(), numbers(&[0.0, 1.0])),
+        ("force_n".to_owned(), numbers(&[6000.0, 5000.0])),
+    ];
+    columns.extend(more.into_iter().map(|(name, field)| (name.to_owned(), field)));
+    write_table(&path, columns, vec![]).unwrap();
+    let run = MeasuredRun::load(&path, Acceptance::default(), PARQUET);
+    std::fs::remove_dir_all(&directory).unwrap();
+    run.map_err(|error| error.to_string())
+}
+
+#[test]
+fn regression_a_channel_that_is_misspelt_or_holds_no_numbers_is_not_passed_over() {
+    // Issue 12: the run was calibrated without it, and P was 58.73 % in place of 76.18 %.
+    let warm = || Field::Number(vec![Some(288.0), Some(290.0)]);
+    let text = || Field::Text(vec![Some("288".to_owned()), Some("290".to_owned())]);
+    for (column, field, expected) in [
+        ("fluid_temperture_k", warm(), "did you mean `fluid_temperature_k`"),
+        ("Fluid_Temperature_K", warm(), "did you mean `fluid_temperature_k`"),
+        ("fluid_temperature_c", warm(), "did you mean `fluid_temperature_k`"),
+        ("fluid_temperature_k", text(), "it holds text, not numbers"),
+        ("fluid", warm(), "column `fluid` has no unit"),
+        ("fluid [ft]", warm(), "column fluid [ft]: "),
+    ] {
+        let message = parquet("run.parquet", vec![(column, field)]).expect_err(column);
+        assert!(message.contains(expected), "{column}: {message}");
+    }
+    let twice = vec![("fluid_temperature_k", warm()), ("fluid [K]", warm())];
+    let message = parquet("run.parquet", twice).expect_err("twice");
+    assert!(message.contains("both hold the fluid"), "{message}");
+}
+
+#[test]
+fn property_other_columns_are_told_and_units_are_read() {
+    let cold = Field::Number(vec![Some(14.85), Some(16.85)]);
+    let remark = Field::Text(vec![None, None]);
+    let more = vec![
+        ("fluid [°C]", cold),
+        ("remark", remark),
+        ("skin_temperature_k", Field::Count(vec![1, 2])),
+    ];
+    // The ending may be written in capitals, or be another: the file says what it is.
+    for name in ["RUN.PARQUET", "run.pq", "run.dat"] {
+        let run = parquet(name, more.clone()).expect(name);
+        assert_eq!(run.fluid_k, Some(vec![288.0, 290.0]));
+        assert_eq!(run.unused, ["remark", "skin_temperature_k"]);
+        assert!(
+            run.note().is_some_and(|note| note.ends_with("not read: remark, skin_temperature_k"))
+        );
+    }
+    assert_eq!(parquet("run.parquet", Vec::new()).unwrap().note(), None);
 }

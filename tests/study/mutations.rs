@@ -106,6 +106,13 @@ fn check(answer: Result<Study>) -> std::result::Result<(), TestCaseError> {
             prop_assert!(study.resolved().len() >= 32);
             prop_assert!(study.joint.dimension() == study.inputs.len());
         }
+        Err(Error::Several(all)) => {
+            prop_assert!(all.len() > 1);
+            for one in all {
+                prop_assert!(!matches!(one, Error::Several(_)));
+                check(Err(one))?;
+            }
+        }
         Err(Error::Input(diagnostic)) => {
             let span = diagnostic.span.clone();
             prop_assert!(diagnostic.text.get(span.clone()).is_some(), "{span:?}: {diagnostic:?}");

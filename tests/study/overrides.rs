@@ -11,7 +11,7 @@ fn property_an_override_reaches_every_part_of_a_study() {
     let study = shipped(&[
         "initial.temperature=\"0 °F\"",
         "fluid.nominal_viscosity = 30000 cSt",
-        "reel.inertia=31",
+        "reel.inertia=31 kg·m²",
         "brake.gap=0.065 in",
         "brake.gap[2]=0.066 in",
         "model=quasi-steady",
@@ -116,7 +116,7 @@ fn regression_bad_overrides_are_shown_in_the_options_text() {
         ),
         (
             "sampling.samples=lots",
-            "--set:1:18: this is a text: expected a whole number from 1 to 1125899906842624, such as 100_000",
+            "--set:1:18: this is a string: expected a whole number from 1 to 1125899906842624, such as 100_000",
         ),
         (
             "limits.tim.max=1 s",

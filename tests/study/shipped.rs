@@ -202,7 +202,7 @@ fn property_later_cards_win_input_by_input() {
 fn property_every_parameter_is_listed_with_its_source() {
     let study = shipped(&["initial.temperature=0 °F", "brake.gap[3]=0.07 in"]).expect("a study");
     let rows = study.resolved();
-    assert_eq!(rows.len(), 32 + 1);
+    assert_eq!(rows.len(), 36 + 1);
     let row = |path: &str| rows.iter().find(|row| row.path == path).expect("a row");
     assert_eq!(row("initial.temperature").text, "0 °F (255.372 K)");
     assert_eq!(row("initial.temperature").source, "--set: 0 °F");
@@ -261,6 +261,77 @@ fn property_readings_predict_the_law() {
     assert!((temperature.sd() - 8.0 / 1.8 * 2.0_f64.sqrt()).abs() < 1e-12);
     let other = include_str!("accepted/card_readings.toml").replace("0.98", "0.97");
     assert_ne!(study.digest(), card_alone(&other).expect("a card").digest());
+}
+
+#[test]
+fn property_the_most_demanding_requirement_that_is_read_can_be_judged() {
+    use reeldown::reliability::demonstration::{Requirement, minimum_samples};
+    let share = 1.0 - 1e-12;
+    let set = ["requirement.reliability=0.999999999999", "requirement.confidence=0.999999999999"];
+    assert_eq!(
+        super::sources::shipped(&set).expect("a study").requirement.map(|r| r.reliability),
+        Some(share)
+    );
+    for failures in 0..=20 {
+        assert!(minimum_samples(share, share, failures).is_ok(), "{failures}");
+    }
+    let counts =
+        reeldown::reliability::probability::Proportion::new(0, 0, 100_000).expect("counts");
+    Requirement::new(share, share).and_then(|r| r.verdict(&counts)).expect("a verdict");
+}
+
+#[test]
+fn property_a_group_of_one_input_is_that_input() {
+    // The pair's index used to be lost without a word: a factor of one input has no group beside it.
+    let card = include_str!("../../distributions/habe.toml");
+    let study = "title = \"x\"\ncard = [\"habe.toml\", \"card.toml\"]\n[sensitivity]\n\
+                 pairs = [[\"law\", \"initial.temperature\"]]\n";
+    let shear = "[fluid.shear_factor]\nlaw = \"lognormal\"\nmedian = 1\ncv = \"8 %\"\n\
+                 group = \"law\"\nknown = \"never\"\nsource = \"x\"\n";
+    assert!(card.contains("[fluid.shear_factor]"));
+    let study = super::sources::study_with(study, shear, &[]).expect("a study");
+    let pair = ("fluid.shear_factor".to_owned(), "initial.temperature".to_owned());
+    assert_eq!(study.sensitivity.pairs, [pair]);
+}
+
+#[test]
+fn analytic_an_empirical_law_reads_its_column_in_its_unit() {
+    let card = |column: &str| {
+        format!(
+            "[brake.gap]\nlaw = \"empirical\"\nfile = \"measured.csv\"\ncolumn = \"{column}\"\n\
+                 known = \"at build\"\nsource = \"x\"\n"
+        )
+    };
+    for (column, unit_m) in [("gap [in]", 0.0254), ("gap [mil]", 0.0254 * 1e-3 * 1e3 / 1e3)] {
+        let study = card_alone(&card(column)).expect(column);
+        let (low, high) = study.inputs[0].marginal.support();
+        let of = if column == "gap [in]" { (0.061, 0.064) } else { (61.0, 64.0) };
+        assert!((low / (of.0 * unit_m) - 1.0).abs() < 1e-15, "{column}: {low}");
+        assert!((high / (of.1 * unit_m) - 1.0).abs() < 1e-15, "{column}: {high}");
+    }
+}
+
+#[test]
+fn property_every_bare_number_with_a_dimension_is_refused() {
+    use reeldown::physics::parameters::PARAMETERS;
+    use reeldown::study::Over;
+    use reeldown::units::Quantity;
+    let message = |error: reeldown::error::Error| error.to_string();
+    for info in &PARAMETERS {
+        let answers = [
+            super::sources::shipped(&[&format!("{}=1", info.path)]).map(|_| ()).map_err(message),
+            Over::parse("--over", &format!("{}=1..2:3", info.path)).map(|_| ()).map_err(message),
+        ];
+        for answer in answers {
+            let bare = answer.is_err_and(|message| message.contains("has no unit"));
+            assert_eq!(bare, info.quantity != Quantity::Number, "{}", info.path);
+        }
+    }
+    for outcome in reeldown::descent::OutcomeQuantity::ALL {
+        let limit = format!("limits.{}.max=400", outcome.name());
+        let error = super::sources::shipped(&[&limit]).expect_err(&limit).to_string();
+        assert!(error.contains("400 has no unit"), "{error}");
+    }
 }
 
 #[test]

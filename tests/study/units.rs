@@ -84,6 +84,37 @@ fn analytic_values_by_the_definitions_of_the_units() {
         ("1 hp", Power, 745.699_871_582_270_2),
         ("1 kN·m/s", Power, 1000.0),
         ("2200 lb", Mass, 2200.0 * 0.453_592_37),
+        ("2200 pounds", Mass, 2200.0 * 0.453_592_37),
+        ("6 kip", Force, 6000.0 * 4.448_221_615_260_5),
+        ("6000 pounds-force", Force, 6000.0 * 4.448_221_615_260_5),
+        ("6000 lb-f", Force, 6000.0 * 4.448_221_615_260_5),
+        ("26.7 kilonewtons", Force, 26_700.0),
+        ("30 kg·m2", Inertia, 30.0),
+        ("30 kg m^2", Inertia, 30.0),
+        ("30 kg-m2", Inertia, 30.0),
+        ("1 slug-ft2", Inertia, 4.448_221_615_260_5 / 0.3048 * 0.3048 * 0.3048),
+        ("0.125 m2/s", KinematicViscosity, 0.125),
+        ("125000 mm2/s", KinematicViscosity, 0.125),
+        ("121.25 Pa·s m3/kg", KinematicViscosity, 121.25),
+        ("125 centistokes", KinematicViscosity, 1.25e-4),
+        ("60 deg F", Temperature, (60.0 + 459.67) / 1.8),
+        ("60 ° F", Temperature, (60.0 + 459.67) / 1.8),
+        ("60 degrees Fahrenheit", Temperature, (60.0 + 459.67) / 1.8),
+        ("10 deg C", TemperatureDifference, 10.0),
+        ("1 BTU/(h·°F)", Conductance, 1_055.055_852_62 / 3600.0 * 1.8),
+        ("1 BTU/h-°F", Conductance, 1_055.055_852_62 / 3600.0 * 1.8),
+        ("680 W/(K)", Conductance, 680.0),
+        ("1 kWh/K", HeatCapacity, 3.6e6),
+        ("100 mph", Speed, 44.704),
+        ("36 kph", Speed, 10.0),
+        ("10 knots", Speed, 10.0 * 1852.0 / 3600.0),
+        ("2.5 fps", Speed, 0.762),
+        ("2.5 m s-1", Speed, 2.5),
+        ("970 kg/m3", Density, 970.0),
+        ("60 lb/ft3", Density, 60.0 * 0.453_592_37 / (0.3048 * 0.3048 * 0.3048)),
+        ("500 m2", Area, 500.0),
+        ("1 day", Time, 86_400.0),
+        ("10 lbf-ft/s", Power, 10.0 * 4.448_221_615_260_5 * 0.3048),
     ] {
         let value = si(text, quantity);
         // A few roundings of factors that are exact: 4 ulp.
@@ -105,7 +136,13 @@ fn property_a_wrong_unit_says_what_was_expected() {
     assert_eq!(suggestion("60 F", Quantity::Temperature), "write °F or degF");
     assert_eq!(suggestion("125000 cst", Quantity::KinematicViscosity), "did you mean `cSt`?");
     assert_eq!(suggestion("0.062 inchs", Quantity::Length), "did you mean `inch`?");
-    assert!(suggestion("0.062", Quantity::Length).ends_with("in SI: m"));
+    let bare = refused("0.062", Quantity::Length);
+    assert_eq!(bare.problem, "0.062 has no unit");
+    assert_eq!(bare.help.as_deref(), Some("write \"0.062 in\", \"0.062 mm\" or \"0.062 m\""));
+    assert!(suggestion("6000 pounds", Quantity::Force).ends_with("write lbf"));
+    for dynamic in ["121 Pa·s", "121 Pa-s", "121000 mPa·s", "1210 P", "121 N·s/m2"] {
+        assert!(suggestion(dynamic, Quantity::KinematicViscosity).contains("dynamic viscosity"));
+    }
     assert!(suggestion("1 000 cSt", Quantity::KinematicViscosity).contains("separators"));
     assert!(suggestion("125,000 cSt", Quantity::KinematicViscosity).contains("separators"));
 }
@@ -144,12 +181,44 @@ fn property_what_is_no_value_is_refused_inside_its_text() {
         "−",
         "1 °",
         "5 % m/s/m",
+        "5 W/(m",
+        "5 W/m)",
+        "5 (m)",
+        "5 W/(m/K)",
+        "5 W/()",
+        "5 m-",
+        "5 -m",
+        "5 m--s",
+        "5 deg",
+        "5 deg X",
     ] {
         for quantity in [Quantity::Length, Quantity::Temperature] {
             let error = refused(text, quantity);
             assert!(error.span.end <= text.len() && error.span.start <= error.span.end, "{text}");
             assert!(text.is_char_boundary(error.span.start), "{text}");
             assert!(text.is_char_boundary(error.span.end), "{text}");
+        }
+    }
+}
+
+#[test]
+fn property_only_a_pure_number_is_taken_without_a_unit() {
+    for quantity in Quantity::ALL {
+        for written in ["0", "450", "-1e-3"] {
+            let value: f64 = written.parse().expect("a number");
+            let bare = reeldown::units::bare(value, written, quantity);
+            let texts =
+                [bare.map_err(|e| e.problem), parse(written, quantity).map_err(|e| e.problem)];
+            for answer in texts {
+                match quantity {
+                    Quantity::Number => assert_eq!(answer, Ok(value)),
+                    _ => assert_eq!(answer, Err(format!("{written} has no unit"))),
+                }
+            }
+        }
+        // What the message proposes is read, and as this quantity.
+        for unit in quantity.usual_units() {
+            assert!(parse(&format!("1 {unit}"), quantity).is_ok(), "{unit}");
         }
     }
 }

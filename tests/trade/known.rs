@@ -56,7 +56,7 @@ fn correlated() -> Study {
         fn card(&mut self, name: &str, _: bool) -> Result<reeldown::study::NamedText, String> {
             Ok(reeldown::study::NamedText { origin: name.into(), text: self.0.clone() })
         }
-        fn column(&mut self, _: &str, _: &str, _: &str) -> Result<Vec<f64>, String> {
+        fn sample(&mut self, _: &str, _: &str) -> Result<reeldown::study::SampleFile, String> {
             Err("none".into())
         }
     }

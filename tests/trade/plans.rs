@@ -7,10 +7,11 @@ use reeldown::campaign::tighten::{purchases, tighten};
 use reeldown::campaign::trade::trade_factors;
 use reeldown::reliability::allocation::Purchase;
 use reeldown::reliability::demonstration::Verdict;
+use reeldown::study::TighteningCost;
 
 #[test]
 fn property_a_plan_is_demonstrated_by_points_that_it_was_not_made_on() {
-    let study = study(&["tighten.samples=4000"]);
+    let study = study(&["tighten.samples=4000", "initial.temperature.cost=1"]);
     let found = tighten(&study, Some(0.03), &Progress::default()).expect("an answer");
     let found = found.expect("not stopped");
     let plan = found.search.plan.as_ref().expect("a plan exists");
@@ -28,9 +29,10 @@ fn property_what_cannot_be_bought_stands_in_the_way() {
     // Nothing but the averaging offset can be bought, and the design cannot move: P stays at four in ten.
     let mut study = study(&["tighten.samples=2000"]);
     for input in &mut study.inputs {
-        if input.target.path() != "fluid.averaging_offset" {
-            input.cost = reeldown::study::TighteningCost::None;
-        }
+        input.cost = match input.target.path().as_str() {
+            "fluid.averaging_offset" => TighteningCost::PerHalving(1.0),
+            _ => TighteningCost::None,
+        };
     }
     study.tighten.design.clear();
     let found = tighten(&study, Some(0.01), &Progress::default()).expect("an answer");
@@ -47,5 +49,11 @@ fn property_groups_are_bought_once_and_grades_are_kept() {
     let study = study(&[]);
     let factors = trade_factors(&study);
     let costs = purchases(&study, &factors).expect("costs");
-    assert!(costs.iter().all(|cost| *cost == Purchase::PerHalving(1.0)), "{costs:?}");
+    for (factor, cost) in factors.iter().zip(&costs) {
+        let expected = match factor.name.as_str() {
+            "initial.temperature" | "fluid.averaging_offset" => Purchase::Nothing,
+            _ => Purchase::PerHalving(1.0),
+        };
+        assert_eq!(*cost, expected, "{}", factor.name);
+    }
 }

@@ -3,7 +3,7 @@
 use reeldown::campaign::{Ensemble, Progress};
 use reeldown::descent::driven::Drive;
 use reeldown::findings::rig::information::{Parameters, information, posterior};
-use reeldown::findings::rig::{HalfSpaces, Instruments};
+use reeldown::findings::rig::{Equipment, HalfSpaces};
 use reeldown::numerics::columns::Columns;
 use reeldown::numerics::special::normal;
 use reeldown::reliability::draws::standard_normal;
@@ -72,8 +72,9 @@ fn reference_brute_force_on_one_candidate_and_on_none() {
     let parameters = Parameters::new(&study);
     let spaces = HalfSpaces::new(&study, &parameters.inputs, &Progress::default()).unwrap();
     let count = parameters.count();
+    let equipment = Equipment::assumed(&study.design).expect("a flight");
     let run =
-        information(&parameters, &Instruments::default(), 288.7, Drive::Force, 21_900.0, 222.0);
+        information(&parameters, &equipment.instruments, 288.7, Drive::Force, 21_900.0, 222.0);
     let after = posterior(count, &[&run.expect("a run")]);
     for (covariance, states) in
         [(nalgebra::DMatrix::identity(count, count) * 0.999, 8), (after, 40)]

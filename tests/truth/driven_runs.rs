@@ -3,7 +3,8 @@
 
 use super::reference_descents::design;
 use reeldown::descent::driven::{
-    Drive, Prediction, Reading, Record, Settings, differentiate, predict, predict_with,
+    Correction, Drive, Prediction, Reading, Record, Settings, differentiate, predict,
+    predict_corrected, predict_with,
 };
 use reeldown::descent::reference::{REFERENCE_TOLERANCE, rig};
 use reeldown::descent::vector::InstructionSet;
@@ -206,4 +207,35 @@ fn property_predictions_stay_finite_past_the_end_of_the_line() {
     let seen = run.readings_on_the_line(&record, |value| value);
     assert_eq!(seen.len(), out as usize + 1);
     assert!(run.readings.iter().all(|reading| reading.speed_m_per_s.is_finite()));
+}
+
+/// Gain and offset act on what was read: a corrected record is the record of the corrected readings.
+#[test]
+fn analytic_a_corrected_record_is_the_record_of_corrected_readings() {
+    for (record, design, _) in cases() {
+        let correction = Correction {
+            gain: 1.013,
+            offset: if record.drive() == Drive::Force { 40.0 } else { 0.01 },
+        };
+        let values =
+            record.values().iter().map(|read| correction.gain * read + correction.offset).collect();
+        let mut applied = Record::new(record.drive(), record.times_s().to_vec(), values).unwrap();
+        applied.start_offsets_k = record.start_offsets_k;
+        let settings = Settings::default();
+        let brake = Coefficients::new(&design);
+        let mut corrected = Vec::new();
+        // The second member is not corrected: it must be what it is alone.
+        let set = InstructionSet::best();
+        predict_corrected(set, &record, &settings, &[brake; 2], &[correction], &mut corrected);
+        for (prediction, record) in corrected.iter().zip([&applied, &record]) {
+            let mut plain = Vec::new();
+            predict(record, &settings, &[brake], &mut plain);
+            for (one, other) in prediction.readings.iter().zip(&plain[0].readings) {
+                for (a, b) in entries(one).into_iter().zip(entries(other)) {
+                    // Rounding of the interpolation and of the correction, in the other order, over some thousand steps.
+                    assert!((a - b).abs() <= 1e-11 * b.abs().max(1.0), "{a} {b}");
+                }
+            }
+        }
+    }
 }

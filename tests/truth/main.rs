@@ -2,6 +2,7 @@
 
 mod benchmarks;
 mod breach_probability;
+mod detailed_descents;
 mod driven_runs;
 mod first_order;
 mod near_certainty;

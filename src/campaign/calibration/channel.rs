@@ -1,6 +1,6 @@
 //! What a rig measures.
 
-use crate::descent::driven::{Drive, Reading};
+use crate::descent::driven::{Correction, Drive, Reading};
 use crate::study::MeasuredRun;
 use crate::units::Quantity;
 
@@ -62,6 +62,16 @@ impl Channel {
     /// Whether it is a temperature.
     pub fn is_temperature(self) -> bool {
         self.quantity() == Quantity::Temperature
+    }
+
+    /// The reading at which a gain has no effect, SI: of a thermometer the ice point.
+    pub fn zero(self) -> f64 {
+        if self.is_temperature() { 273.15 } else { 0.0 }
+    }
+
+    /// How an instrument with these errors is corrected: truth − zero = (1 + gain) (reading − zero) + offset.
+    pub fn correction(self, gain: f64, offset: f64) -> Correction {
+        Correction { gain: 1.0 + gain, offset: offset - gain * self.zero() }
     }
 
     /// The channel that drives a run, if it is one.

@@ -6,6 +6,8 @@
 //! [`synthetic`] makes up runs from a known truth.
 
 mod channel;
+pub mod consistency;
+pub mod duplicates;
 pub mod likelihood;
 pub mod next_test;
 pub mod plan;
@@ -21,9 +23,10 @@ use crate::numerics::columns::Columns;
 use crate::numerics::elementary::ln;
 use crate::study::{MeasuredRun, Study};
 pub use channel::Channel;
+use consistency::Consistency;
 pub use likelihood::{Coordinate, RigLikelihood};
 use next_test::NextTests;
-pub use plan::{ChannelNoise, Options, PlannedRun, Positive, SensorError, is_hardware};
+pub use plan::{ChannelNoise, Options, PlannedRun, Positive, SensorError, Systematic, is_hardware};
 use predictive::RunCheck;
 use risk::Risk;
 
@@ -57,12 +60,16 @@ pub struct Calibration<'a> {
     pub inputs: Columns,
     /// The runs against the posterior's predictions.
     pub checks: Vec<RunCheck>,
+    /// Whether runs, card and noise agree.
+    pub consistency: Consistency,
     /// P(any breach) with the study's card, and with the posterior; none without limits.
     pub risk: Option<(Risk, Risk)>,
     /// What to measure next; none without limits.
     pub next: Option<NextTests>,
 }
 
+/// Likelihoods that each particle takes, about.
+const LIKELIHOODS: u64 = 130;
 /// Brakes of the prior that a run's level is held against.
 const SCREENED_BRAKES: usize = 400;
 
@@ -73,13 +80,12 @@ const SCREENED_BRAKES: usize = 400;
 /// Those of the plan.
 pub fn screen(study: &Study, runs: &[&MeasuredRun], options: &Options) -> Result<Vec<Screened>> {
     let planned = plan::planned(runs, study, options)?;
-    let noise = plan::noise(&planned, options);
-    let likelihood = RigLikelihood::new(study, planned, noise);
+    let likelihood = RigLikelihood::of_runs(study, planned, options);
     let prior = risk::prior_brakes(study, SCREENED_BRAKES)?;
     let mut found = Vec::new();
     for (run, planned) in runs.iter().zip(likelihood.runs()) {
         let initial = vec![planned.initial.mean_k; prior.rows()];
-        let predictions = likelihood.predict(&planned.record, &prior, &initial);
+        let predictions = likelihood.predict(&planned.record, &prior, &initial, &[]);
         for channel in Channel::ALL {
             let Some(values) = channel.measured(run) else { continue };
             let mut suspicions = screening::screen(&run.time_s, values);
@@ -119,17 +125,39 @@ fn suspect_level(channel: Channel, values: &[f64], predicted: &[f64]) -> Option<
     }
 }
 
-/// Calibrates a study's card by measured runs; `held_out` runs are predicted only.
+/// What a calibration takes, about, in the units of its progress.
+pub fn about(options: &Options, runs: &[&MeasuredRun]) -> u64 {
+    let moments = runs.iter().map(|run| run.time_s.len()).sum();
+    let likelihoods =
+        LIKELIHOODS * options.plan.particles as u64 * u64::from(options.plan.replicates);
+    likelihoods * likelihood::work(moments) as u64 + 2 * (risk::BRAKES * risk::FLIGHTS) as u64
+}
+
+/// Calibrates a study's card by measured runs; `held_out` runs are predicted only. `None` if `progress` asks for a stop.
 ///
 /// # Errors
-/// A card that cannot be a prior, a run that cannot be compared, data that the card excludes.
+/// A card that cannot be a prior, a run that cannot be compared or is there twice, data that the card excludes.
 pub fn calibrate<'a>(
     study: &'a Study,
     runs: &[&MeasuredRun],
     held_out: &[&MeasuredRun],
     options: &Options,
-    progress: &Progress,
+    progress: &'a Progress,
+) -> Result<Option<Calibration<'a>>> {
+    match calibrated(study, runs, held_out, options, progress) {
+        Err(_) if progress.stopping() => Ok(None),
+        found => found.map(Some),
+    }
+}
+
+fn calibrated<'a>(
+    study: &'a Study,
+    runs: &[&MeasuredRun],
+    held_out: &[&MeasuredRun],
+    options: &Options,
+    progress: &'a Progress,
 ) -> Result<Calibration<'a>> {
+    duplicates::refuse_twice(runs, held_out)?;
     if !study.inputs.iter().any(|input| is_hardware(input.target.parameter)) {
         return Err(Error::argument(
             "nothing of the brake or its fluid is uncertain in this study: there is nothing to calibrate",
@@ -145,7 +173,8 @@ pub fn calibrate<'a>(
     let screened = screen(study, &everything, options)?;
     let planned = plan::planned(runs, study, options)?;
     let held_out = plan::planned(held_out, study, options)?;
-    let noise = plan::noise(&planned, options);
+    let likelihood = RigLikelihood::of_runs(study, planned, options).watched(progress);
+    let noise = likelihood.noise();
     let unseen = held_out
         .iter()
         .flat_map(|run| run.channels.iter().map(move |(channel, _)| (run, *channel)))
@@ -158,13 +187,13 @@ pub fn calibrate<'a>(
             channel.name()
         )));
     }
-    let likelihood = RigLikelihood::new(study, planned, noise);
     let start = vec![0.0; likelihood.coordinates().len()];
     let fit = best_fit(&likelihood, &start)?;
     let posterior = sample(&likelihood, &options.plan)?;
     let draws = posterior.draws();
     let inputs = likelihood.inputs(&Columns::from_rows(&draws));
     let checks = predictive::check(&likelihood, &held_out, &draws, options.plan.seed)?;
+    let consistency = consistency::consistency(&likelihood, &held_out, &fit, &draws, &checks)?;
     let (risk, next) = match study.limits.is_empty() {
         true => (None, None),
         false => {
@@ -193,6 +222,7 @@ pub fn calibrate<'a>(
         draws,
         inputs,
         checks,
+        consistency,
         risk,
         next,
     })

@@ -1,16 +1,16 @@
 //! What a further measurement would be worth: the expected narrowing of the band on P(any breach).
 //!
 //! Each measurement is turned into the information that it would give about the inputs, at the posterior's mean: of a rig
-//! run the derivatives of its readings through the noise as the calibration found it, with the run's own initial
-//! temperature not known; of a direct measurement the stated error. [`crate::calibration::narrowing`] says what is linear
+//! run the derivatives of its readings through the noise as the calibration found it, by the same instruments with their
+//! gains and offsets, the run's own initial temperature not known; of a direct measurement the stated error. [`crate::calibration::narrowing`] says what is linear
 //! in that.
 
 use super::channel::Channel;
-use super::likelihood::{RigLikelihood, combined};
-use super::plan::is_hardware;
+use super::likelihood::{Coordinate, RigLikelihood};
+use super::plan::{INITIAL_SD_K, InitialTemperature, is_hardware};
 use crate::calibration::narrowing::Dependence;
 use crate::calibration::noise::{Noise, Reading, Series, whiten};
-use crate::descent::driven::{Drive, Record};
+use crate::descent::driven::{Drive, Prediction, Record, Settings, predict};
 use crate::error::Result;
 use crate::numerics::columns::Columns;
 use crate::numerics::special::normal;
@@ -48,8 +48,6 @@ pub struct NextTests {
 
 /// Interval between the readings of a planned run, s.
 const EVERY_S: f64 = 1.0;
-/// Standard deviation of a planned run's initial temperature beforehand, K.
-const INITIAL_SD_K: f64 = 5.0;
 /// Error of a gap survey, m: half a thousandth of an inch.
 const GAP_SURVEY_M: f64 = 0.5 * 2.54e-5;
 /// Relative error of a viscometer at the working shear rate.
@@ -76,13 +74,19 @@ pub fn next_tests(
     probits: &[f64],
     own_variance: f64,
 ) -> Result<NextTests> {
-    let n = study.inputs.len();
+    // The brake, and the instruments that will measure it again.
+    let belongs = |coordinate: &Coordinate| match *coordinate {
+        Coordinate::Input(j) => is_hardware(study.inputs[j].target.parameter),
+        Coordinate::Gain(_) | Coordinate::Offset(_) => true,
+        _ => false,
+    };
+    let coordinates = likelihood.coordinates();
     let columns: Vec<usize> =
-        (0..n).filter(|&j| is_hardware(study.inputs[j].target.parameter)).collect();
+        (0..coordinates.len()).filter(|&j| belongs(&coordinates[j])).collect();
     let reduced: Vec<Vec<f64>> =
         draws.iter().map(|row| columns.iter().map(|&j| row[j]).collect()).collect();
     let dependence = Dependence::new(&reduced, probits, own_variance)?;
-    let d = likelihood.coordinates().len();
+    let d = coordinates.len();
     let mean: Vec<f64> =
         (0..d).map(|j| draws.iter().map(|row| row[j]).sum::<f64>() / draws.len() as f64).collect();
     let planner = Planner { study, likelihood, columns, mean };
@@ -105,7 +109,7 @@ pub fn next_tests(
 struct Planner<'a> {
     study: &'a Study,
     likelihood: &'a RigLikelihood<'a>,
-    /// The hardware's coordinates.
+    /// The coordinates of brake and instruments.
     columns: Vec<usize>,
     mean: Vec<f64>,
 }
@@ -132,7 +136,8 @@ impl Planner<'_> {
             ("rig run at constant power", Drive::Power, force_n * speed_m_per_s),
         ];
         for (name, drive, level) in runs {
-            let record = Record::held(drive, level, 0.9 * length_m / speed_m_per_s, EVERY_S)?;
+            let held = Record::held(drive, level, 0.9 * length_m / speed_m_per_s, EVERY_S)?;
+            let Some(record) = self.recorded(held, &inputs)? else { continue };
             let mut instruments = channels.clone();
             if !instruments.contains(&Channel::Force) {
                 instruments.insert(0, Channel::Force);
@@ -146,7 +151,7 @@ impl Planner<'_> {
                 })
                 .filter(|&channel| channel != Channel::Line)
                 .collect();
-            if let Some(information) = self.of_run(&record, &predicted, &inputs, &by_input) {
+            if let Some(information) = self.of_run(&record, &predicted) {
                 let read: Vec<&str> = predicted.iter().map(|channel| channel.name()).collect();
                 let detail = format!("{} read as in the runs", read.join(", "));
                 found.push((name.to_owned(), detail, information));
@@ -154,7 +159,7 @@ impl Planner<'_> {
         }
         if !temperatures.is_empty() {
             let record = soak(speed_m_per_s)?;
-            if let Some(information) = self.of_run(&record, &temperatures, &inputs, &by_input) {
+            if let Some(information) = self.of_run(&record, &temperatures) {
                 let read: Vec<&str> = temperatures.iter().map(|channel| channel.name()).collect();
                 let detail = format!(
                     "{HEATING_S} s at constant speed, then {} min at rest, {} read",
@@ -188,18 +193,29 @@ impl Planner<'_> {
         self.likelihood.noise().iter().map(|noise| noise.channel).collect()
     }
 
-    /// Information of a driven run about the hardware's coordinates, its initial temperature integrated out.
-    fn of_run(
-        &self,
-        record: &Record,
-        channels: &[Channel],
-        inputs: &[f64],
-        by_input: &[Vec<f64>],
-    ) -> Option<DMatrix<f64>> {
-        let initial_k = self.study.design.get(Parameter::InitialTemperature);
-        let slopes = self.likelihood.slopes(record, inputs, initial_k, channels)?;
-        let m = self.columns.len();
-        let n = inputs.len();
+    /// What such a run would record: of a held power, the force.
+    fn recorded(&self, held: Record, inputs: &[f64]) -> Result<Option<Record>> {
+        if held.drive() != Drive::Power {
+            return Ok(Some(held));
+        }
+        let Some(brake) = self.likelihood.coefficients(inputs) else { return Ok(None) };
+        let mut predictions: Vec<Prediction> = Vec::new();
+        predict(&held, &Settings::default(), &[brake], &mut predictions);
+        let Some(run) = predictions.pop().filter(|run| run.fault.is_none()) else {
+            return Ok(None);
+        };
+        let force = run.readings.iter().map(|reading| reading.force_n).collect();
+        Record::new(Drive::Force, held.times_s().to_vec(), force).map(Some)
+    }
+
+    /// Information of a driven run about the coordinates of brake and instruments, its initial temperature integrated
+    /// out.
+    fn of_run(&self, record: &Record, channels: &[Channel]) -> Option<DMatrix<f64>> {
+        let mean_k = self.study.design.get(Parameter::InitialTemperature);
+        let initial = InitialTemperature { mean_k, sd_k: INITIAL_SD_K };
+        let slopes = self.likelihood.slopes(record, &self.mean, initial, channels)?;
+        let (m, n) = (self.columns.len(), self.study.inputs.len());
+        let runs = self.likelihood.runs().len();
         let mut matrix = DMatrix::<f64>::zeros(m + 1, m + 1);
         for (c, channel) in channels.iter().enumerate() {
             let readings: Vec<Reading> = record
@@ -210,23 +226,22 @@ impl Planner<'_> {
                 .collect();
             let count = readings.len();
             let series = Series { readings, degrees_of_freedom: None };
-            let mut columns: Vec<Vec<f64>> = vec![vec![0.0; count]];
-            columns.extend(slopes.derivatives[c].iter().cloned());
-            whiten(&series, &self.noise_of(*channel), &mut columns);
-            let mut slopes: Vec<Vec<f64>> = self
-                .columns
-                .iter()
-                .map(|&j| combined(&columns[1..=n], by_input.iter().map(|row| row[j])))
-                .collect();
-            slopes.push(columns[1 + n].clone());
-            for (a, x) in slopes.iter().enumerate() {
-                for (b, y) in slopes.iter().enumerate() {
-                    matrix[(a, b)] += x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
+            let mut whitened: Vec<Vec<f64>> = vec![vec![0.0; count]];
+            whitened.extend(slopes.derivatives[c].iter().cloned());
+            whiten(&series, &self.noise_of(*channel), &mut whitened);
+            // The card's coordinates, the initial temperature's, the instruments'.
+            let place = |j: usize| if j < n { 1 + j } else { 2 + j - runs };
+            let mut chosen: Vec<&Vec<f64>> =
+                self.columns.iter().filter_map(|&j| whitened.get(place(j))).collect();
+            chosen.extend(whitened.get(1 + n));
+            for (a, x) in chosen.iter().enumerate() {
+                for (b, y) in chosen.iter().enumerate() {
+                    matrix[(a, b)] += x.iter().zip(*y).map(|(x, y)| x * y).sum::<f64>();
                 }
             }
         }
         // The initial temperature has its prior, and is integrated out.
-        let own = matrix[(m, m)] + 1.0 / (INITIAL_SD_K * INITIAL_SD_K);
+        let own = matrix[(m, m)] + 1.0;
         let with = matrix.view((0, m), (m, 1)).into_owned();
         let information = matrix.view((0, 0), (m, m)) - &with * with.transpose() / own;
         information.iter().all(|value| value.is_finite()).then_some(information)
@@ -267,9 +282,10 @@ impl Planner<'_> {
         for (i, input) in self.study.inputs.iter().enumerate() {
             let Some(sd) = sd(input.target.parameter, inputs[i]) else { continue };
             any = true;
+            let slope = |j: usize| by_input[i].get(j).copied().unwrap_or(0.0);
             for (a, &j) in self.columns.iter().enumerate() {
                 for (b, &k) in self.columns.iter().enumerate() {
-                    matrix[(a, b)] += by_input[i][j] * by_input[i][k] / (sd * sd);
+                    matrix[(a, b)] += slope(j) * slope(k) / (sd * sd);
                 }
             }
         }

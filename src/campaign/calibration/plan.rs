@@ -1,13 +1,14 @@
 //! What is calibrated by what: the runs, how they are driven, and the laws of everything that is not on the card.
 
 use super::channel::Channel;
-use crate::calibration::Plan;
 use crate::calibration::noise::{Reading, Series};
+use crate::calibration::{Plan, screening};
 use crate::descent::driven::{Drive, Record};
 use crate::error::{Error, Result};
 use crate::numerics::elementary::exp;
 use crate::physics::parameters::Parameter;
 use crate::study::{MeasuredRun, Study};
+use crate::units::{display, number};
 
 /// A positive quantity that is not known: its logarithm is normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,6 +46,34 @@ pub struct ChannelNoise {
     pub discrepancy: Option<(Positive, Positive)>,
 }
 
+/// What all readings of an instrument err by alike, in every run: truth − zero = (1 + gain) (reading − zero) + offset.
+/// Both are normal with mean zero; a standard deviation of zero is an error that the instrument does not have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Systematic {
+    /// The channel.
+    pub channel: Channel,
+    /// Standard deviation of the gain's error.
+    pub gain: f64,
+    /// Standard deviation of the offset, SI.
+    pub offset: f64,
+}
+
+/// Systematic error of load cell, speedometer and line counter where none is stated, as a share: assumed.
+pub const GAIN: f64 = 0.01;
+/// Systematic error of a thermometer where none is stated, K (2 °F): assumed.
+pub const OFFSET_K: f64 = 2.0 / 1.8;
+
+impl Systematic {
+    /// What is assumed of a channel's instrument if nothing is stated; [`crate::findings::rig::Instruments`] plans with
+    /// the same.
+    pub fn assumed(channel: Channel) -> Self {
+        match channel.is_temperature() {
+            true => Systematic { channel, gain: 0.0, offset: OFFSET_K },
+            false => Systematic { channel, gain: GAIN, offset: 0.0 },
+        }
+    }
+}
+
 /// A law of the temperature at a run's start, K.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InitialTemperature {
@@ -72,6 +101,10 @@ pub struct PlannedRun {
 pub struct Options {
     /// Stated standard deviations of sensors, SI.
     pub sensor_sd: Vec<(Channel, f64)>,
+    /// Stated standard deviations of the instruments' gains, as shares; zero for none.
+    pub gain_sd: Vec<(Channel, f64)>,
+    /// Stated standard deviations of the instruments' offsets, SI; zero for none.
+    pub offset_sd: Vec<(Channel, f64)>,
     /// Median of the discrepancy's standard deviation, as a share of the channel's range; none for no discrepancy.
     pub discrepancy: Option<f64>,
     /// Degrees of freedom of heavy-tailed noise; none for normal noise.
@@ -86,6 +119,8 @@ impl Default for Options {
     fn default() -> Self {
         Options {
             sensor_sd: Vec::new(),
+            gain_sd: Vec::new(),
+            offset_sd: Vec::new(),
             discrepancy: Some(0.01),
             degrees_of_freedom: None,
             drive: None,
@@ -96,7 +131,7 @@ impl Default for Options {
 
 /// Standard deviation of a run's initial temperature about its first readings, K: wide, for the readings
 /// themselves are compared too.
-const INITIAL_SD_K: f64 = 5.0;
+pub const INITIAL_SD_K: f64 = 5.0;
 /// Standard deviation of the logarithm of an estimated sensor error, and of a discrepancy.
 const NOISE_LOG_SD: f64 = 1.0;
 /// Median of the discrepancy's correlation time, as a share of the longest run, and the logarithm's standard deviation.
@@ -151,6 +186,9 @@ fn planned_run(run: &MeasuredRun, study: &Study, options: &Options) -> Result<Pl
             drive.name()
         )));
     }
+    for &(channel, sd) in &options.sensor_sd {
+        refuse_finer_than_its_display(run, channel, sd)?;
+    }
     let drive_sd = Channel::of_drive(drive).and_then(|of_drive| {
         options.sensor_sd.iter().find(|(channel, _)| *channel == of_drive).map(|(_, sd)| *sd)
     });
@@ -170,6 +208,27 @@ fn planned_run(run: &MeasuredRun, study: &Study, options: &Options) -> Result<Pl
         channels: channels.into_iter().map(|channel| (channel, series(channel))).collect(),
         record,
     })
+}
+
+/// A sensor cannot err by less than the rounding of what it shows: a stated error below that would have the model blamed
+/// for the last digit.
+fn refuse_finer_than_its_display(run: &MeasuredRun, channel: Channel, sd: f64) -> Result<()> {
+    let step = channel.measured(run).and_then(screening::resolution);
+    // The error of rounding to a step is uniform over it.
+    let Some(least) = step.map(|step| step / 12.0_f64.sqrt()).filter(|least| sd < 0.99 * least)
+    else {
+        return Ok(());
+    };
+    let unit = display(channel.quantity().of_difference());
+    let shown = |si: f64| format!("{} {}", number(unit.shown(si), 3), unit.symbol);
+    Err(Error::argument(format!(
+        "{}: its {} is rounded to {}, which alone errs by {}: a --sensor-sd of {} is impossible, state that at least",
+        run.origin,
+        channel.name(),
+        shown(least * 12.0_f64.sqrt()),
+        shown(least),
+        shown(sd)
+    )))
 }
 
 /// Variance that a reading has from the drive's sensor. Speed goes with force nearly in proportion, moment by moment;
@@ -206,6 +265,31 @@ fn initial_temperature(run: &MeasuredRun, study: &Study) -> InitialTemperature {
             sd_k: INITIAL_SD_K,
         },
     }
+}
+
+/// The systematic errors of every instrument that drives a run or is predicted in one, as stated or else assumed.
+pub fn systematic(runs: &[PlannedRun], options: &Options) -> Vec<Systematic> {
+    let used = |channel: &Channel| {
+        runs.iter().any(|run| {
+            Channel::of_drive(run.record.drive()) == Some(*channel)
+                || run.channels.iter().any(|(other, _)| other == channel)
+        })
+    };
+    let stated = |list: &[(Channel, f64)], channel: Channel| {
+        list.iter().find(|(other, _)| *other == channel).map(|(_, sd)| *sd)
+    };
+    Channel::ALL
+        .into_iter()
+        .filter(used)
+        .map(|channel| {
+            let assumed = Systematic::assumed(channel);
+            Systematic {
+                channel,
+                gain: stated(&options.gain_sd, channel).unwrap_or(assumed.gain),
+                offset: stated(&options.offset_sd, channel).unwrap_or(assumed.offset),
+            }
+        })
+        .collect()
 }
 
 /// The laws of the channels' noise, made from the range that the runs cover.

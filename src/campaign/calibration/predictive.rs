@@ -4,7 +4,7 @@ use super::channel::Channel;
 use super::likelihood::RigLikelihood;
 use super::plan::PlannedRun;
 use crate::calibration::noise::standardised;
-use crate::descent::driven::Prediction;
+use crate::descent::driven::{Correction, Prediction};
 use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
 use crate::numerics::special::normal;
@@ -103,8 +103,9 @@ fn check_run(
                     let noise = likelihood.noise_at(*channel, z);
                     let variance = noise.sensor_sd * noise.sensor_sd
                         + noise.discrepancy_sd * noise.discrepancy_sd;
+                    let read = likelihood.correction(*channel, z);
                     weight += 1.0 / variance;
-                    sum += first.value / variance;
+                    sum += read.gain.mul_add(first.value, read.offset) / variance;
                 }
                 let draw = standard_normal(&mut stream);
                 match weight > 0.0 {
@@ -114,8 +115,10 @@ fn check_run(
             }
         })
         .collect();
+    let applied: Vec<Correction> =
+        draws.iter().map(|z| likelihood.drive_correction(&run.record, z)).collect();
     let predictions: Option<Vec<Prediction>> =
-        likelihood.predict(&run.record, inputs, &initial_k).into_iter().collect();
+        likelihood.predict(&run.record, inputs, &initial_k, &applied).into_iter().collect();
     let predictions = predictions
         .ok_or_else(|| Error::argument("a draw of the posterior is an impossible brake"))?;
     let channels = run
@@ -123,6 +126,8 @@ fn check_run(
         .iter()
         .map(|(channel, series)| {
             let noises: Vec<_> = draws.iter().map(|z| likelihood.noise_at(*channel, z)).collect();
+            let read: Vec<Correction> =
+                draws.iter().map(|z| likelihood.correction(*channel, z)).collect();
             let mut check = ChannelCheck {
                 channel: *channel,
                 time_s: series.readings.iter().map(|r| r.time_s).collect(),
@@ -139,9 +144,12 @@ fn check_run(
             for reading in &series.readings {
                 let mut model: Vec<f64> = predictions
                     .iter()
-                    .map(|prediction| channel.predicted(&prediction.readings[reading.moment]))
+                    .zip(&read)
+                    .map(|(prediction, read)| {
+                        read.reading(channel.predicted(&prediction.readings[reading.moment]))
+                    })
                     .collect();
-                let mut read: Vec<f64> = model
+                let mut shown: Vec<f64> = model
                     .iter()
                     .zip(noises.iter().zip(&errors))
                     .map(|(model, (noise, error))| {
@@ -152,10 +160,10 @@ fn check_run(
                     })
                     .collect();
                 model.sort_by(f64::total_cmp);
-                read.sort_by(f64::total_cmp);
+                shown.sort_by(f64::total_cmp);
                 let tail = 0.5 * (1.0 - BAND);
                 check.model.push([tail, 0.5, 1.0 - tail].map(|p| quantile(&model, p)));
-                let band = [tail, 1.0 - tail].map(|p| quantile(&read, p));
+                let band = [tail, 1.0 - tail].map(|p| quantile(&shown, p));
                 inside += usize::from((band[0]..=band[1]).contains(&reading.value));
                 check.band.push(band);
             }
@@ -175,9 +183,9 @@ fn check_run(
             let lasted = check.time_s.last().unwrap_or(&0.0) - check.time_s.first().unwrap_or(&0.0);
             let clusters = 1.0 + lasted / (2.0 * time);
             check.independent = (white * count as f64 + (1.0 - white) * clusters).min(count as f64);
-            for (prediction, noise) in predictions.iter().zip(&noises) {
+            for ((prediction, noise), read) in predictions.iter().zip(&noises).zip(&read) {
                 let scores = standardised(series, noise, |moment| {
-                    channel.predicted(&prediction.readings[moment])
+                    read.reading(channel.predicted(&prediction.readings[moment]))
                 });
                 for (sum, score) in check.scores.iter_mut().zip(scores) {
                     *sum += score.score / predictions.len() as f64;

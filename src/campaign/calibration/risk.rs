@@ -82,6 +82,9 @@ pub fn risk(study: &Study, brakes: &Columns, progress: &Progress) -> Result<Risk
         }
     }
     let table = Ensemble::new(study).at_inputs(&inputs, progress);
+    if progress.stopping() {
+        return Err(Error::argument("stopped before the risk was known"));
+    }
     let mut limits = vec![0.0; study.limits.len()];
     let mut shares = Vec::with_capacity(brakes.rows());
     for k in 0..brakes.rows() {

@@ -34,12 +34,17 @@ pub struct Instrument {
     pub channel: Channel,
     /// Sensor error, and the discrepancy of the model where the channel does not drive.
     pub noise: Noise,
+    /// Gain and offset (SI) that all its readings share: truth = (1 + gain) reading + offset, of a thermometer from
+    /// the ice point.
+    pub systematic: (f64, f64),
     /// Unit of the display, as a header has it.
     pub unit: &'static str,
     /// Step of the display, in that unit.
     pub step: f64,
 }
 
+/// What the file says of itself, and every result that comes of it after it.
+const SYNTHETIC: &str = "synthetic: made up from a known brake, nothing here was measured";
 /// Share of the line at which a run ends.
 const LINE_SHARE: f64 = 0.97;
 /// Steps of the truth, s: finer than a calibration's.
@@ -88,16 +93,17 @@ pub fn run(
             noise.discrepancy_sd = 0.0;
         }
         let errors = drawn_errors(&series, &noise, &mut stream);
+        let read = channel.correction(instrument.systematic.0, instrument.systematic.1);
         let floor = if channel.is_temperature() { f64::NEG_INFINITY } else { 0.0 };
         let shown = readings
             .iter()
             .zip(errors)
-            .map(|(reading, error)| (channel.predicted(reading) + error).max(floor))
+            .map(|(reading, error)| (read.reading(channel.predicted(reading)) + error).max(floor))
             .map(|value| displayed(value, instrument))
             .collect::<Result<Vec<String>>>()?;
         columns.push((format!("{} [{}]", channel.name(), instrument.unit), shown));
     }
-    let mut text = "time [s]".to_owned();
+    let mut text = format!("# {SYNTHETIC}\ntime [s]");
     for (header, _) in &columns {
         text += &format!(", {header}");
     }

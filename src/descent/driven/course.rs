@@ -1,6 +1,6 @@
 //! The course of one run, or of as many side by side as the number type holds.
 
-use super::record::{Drive, Record};
+use super::record::{Correction, Drive, Record};
 use super::{Reading, Settings};
 use crate::numerics::real::Real;
 use crate::physics::Coefficients;
@@ -18,28 +18,32 @@ const BEYOND_REEL: f64 = 0.5;
 struct Truck<'a, R> {
     drive: Drive,
     constants: &'a Coefficients<R>,
+    correction: Correction<R>,
     /// The line that the reel keeps its radius from, m.
     furthest_m: R,
 }
 
 impl<'a, R: Real> Truck<'a, R> {
     #[inline(always)]
-    fn new(drive: Drive, constants: &'a Coefficients<R>) -> Self {
+    fn new(drive: Drive, constants: &'a Coefficients<R>, correction: Correction<R>) -> Self {
         let number = R::constant;
         let reel = &constants.reel;
         let length = reel.line_length_m;
         let vanishes = reel.full_radius_squared_m2 / reel.squared_radius_slope_m;
         let by_line = number(1.0 + BEYOND_LINE) * length;
         let by_reel = number(BEYOND_REEL).mul_add(vanishes - length, length);
-        Truck { drive, constants, furthest_m: by_line.min(by_reel) }
+        Truck { drive, constants, correction, furthest_m: by_line.min(by_reel) }
     }
 
     /// Rates and readings with a value applied. Past the furthest the reel keeps its radius: predictions
     /// stay finite wherever a trial's line ends.
     #[inline(always)]
-    fn at(&self, applied: f64, state: &State<R>) -> Moment<State<R>, R> {
+    fn at(&self, read: f64, state: &State<R>) -> Moment<State<R>, R> {
         let [line, fluid, rotor, housing] = *state;
-        let pull = self.drive.pull(R::constant(applied.max(LEAST)));
+        let Correction { gain, offset } = self.correction;
+        let applied = gain.mul_add(R::constant(read.max(LEAST)), offset);
+        // The larger of the two, by what the number type has.
+        let pull = self.drive.pull(-(-applied).min(R::constant(-LEAST)));
         moment(self.constants, pull, &[line.min(self.furthest_m), fluid, rotor, housing])
     }
 }
@@ -69,11 +73,12 @@ pub(super) fn course<R: Real>(
     record: &Record,
     settings: &Settings,
     c: &Coefficients<R>,
+    correction: Correction<R>,
     mut keep: impl FnMut(usize, Reading<R>),
 ) {
     let number = R::constant;
     let (times, values) = (record.times_s(), record.values());
-    let truck = Truck::new(record.drive(), c);
+    let truck = Truck::new(record.drive(), c, correction);
     let warm = |node: usize| c.initial_temperature_k + number(record.start_offsets_k[node]);
     let mut state = [number(0.0), warm(0), warm(1), warm(2)];
     let mut next = state;

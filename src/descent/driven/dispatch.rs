@@ -1,7 +1,7 @@
 //! Members of a batch laid side by side in the machine's registers.
 
 use super::course::course;
-use super::record::Record;
+use super::record::{Correction, Record};
 use super::{Prediction, Reading, Settings};
 use crate::descent::vector::InstructionSet;
 use crate::numerics::lanes::{Lanes, Wide};
@@ -16,6 +16,7 @@ pub(super) fn dispatch(
     record: &Record,
     settings: &Settings,
     batch: &[Coefficients<f64>],
+    corrections: &[Correction],
     predictions: &mut [Prediction],
 ) {
     let room = Reading { line_m: 0.0, force_n: 0.0, speed_m_per_s: 0.0, temperatures_k: [0.0; 3] };
@@ -30,7 +31,7 @@ pub(super) fn dispatch(
             let width = widest(set, rest.len());
             let (group, later) = rest.split_at(rest.len().min(width));
             rest = later;
-            let run = Run { record, settings, batch, members: group };
+            let run = Run { record, settings, batch, corrections, members: group };
             match (set, width) {
                 #[cfg(target_arch = "x86_64")]
                 // SAFETY: `widest` has seen that the machine has the features.
@@ -94,6 +95,8 @@ struct Run<'a> {
     record: &'a Record,
     settings: &'a Settings,
     batch: &'a [Coefficients<f64>],
+    /// Of the drive's instrument; members beyond its end have none.
+    corrections: &'a [Correction],
     members: &'a [usize],
 }
 
@@ -108,9 +111,19 @@ impl Run<'_> {
                 field.lanes_mut()[lane] = value;
             }
         }
+        let correction =
+            |member: usize| self.corrections.get(member).copied().unwrap_or_else(Correction::none);
+        let alike = correction(first);
+        let (mut gain, mut offset) = (V::splat(alike.gain), V::splat(alike.offset));
+        for (lane, &member) in self.members.iter().enumerate() {
+            let own = correction(member);
+            gain.lanes_mut()[lane] = own.gain;
+            offset.lanes_mut()[lane] = own.offset;
+        }
+        let correction = Correction { gain: Wide(gain), offset: Wide(offset) };
         let thins = self.batch[first].fluid.shear_thinning;
         let coefficients = Coefficients::from_fields(fields.map(Wide), thins);
-        course(self.record, self.settings, &coefficients, |k, reading: Reading<Wide<V>>| {
+        let keep = |k: usize, reading: Reading<Wide<V>>| {
             for (lane, &member) in self.members.iter().enumerate() {
                 predictions[member].readings[k] = Reading {
                     line_m: reading.line_m.0.lanes()[lane],
@@ -119,6 +132,7 @@ impl Run<'_> {
                     temperatures_k: reading.temperatures_k.map(|node| node.0.lanes()[lane]),
                 };
             }
-        });
+        };
+        course(self.record, self.settings, &coefficients, correction, keep);
     }
 }

@@ -31,7 +31,7 @@ use super::vector::InstructionSet;
 use crate::numerics::dual::Dual;
 use crate::numerics::real::Real;
 use crate::physics::Coefficients;
-pub use record::{Drive, Record};
+pub use record::{Correction, Drive, Record};
 
 /// How a run is integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -134,8 +134,21 @@ pub fn predict_with(
     batch: &[Coefficients<f64>],
     predictions: &mut Vec<Prediction>,
 ) {
+    predict_corrected(set, record, settings, batch, &[], predictions);
+}
+
+/// [`predict_with`], each member with its own correction of what the record says was applied; members beyond the
+/// end of `corrections` take the record as it is.
+pub fn predict_corrected(
+    set: InstructionSet,
+    record: &Record,
+    settings: &Settings,
+    batch: &[Coefficients<f64>],
+    corrections: &[Correction],
+    predictions: &mut Vec<Prediction>,
+) {
     predictions.resize_with(batch.len(), Prediction::new);
-    dispatch::dispatch(set, record, settings, batch, predictions);
+    dispatch::dispatch(set, record, settings, batch, corrections, predictions);
     for (prediction, c) in predictions.iter_mut().zip(batch) {
         prediction.conclude(record, c.reel.line_length_m, |value| value);
     }
@@ -148,8 +161,19 @@ pub fn differentiate<const N: usize>(
     settings: &Settings,
     coefficients: &Coefficients<Dual<N>>,
 ) -> Prediction<Dual<N>> {
+    differentiate_corrected(record, settings, coefficients, Correction::none())
+}
+
+/// [`differentiate`] with a correction of what the record says was applied.
+pub fn differentiate_corrected<const N: usize>(
+    record: &Record,
+    settings: &Settings,
+    coefficients: &Coefficients<Dual<N>>,
+    correction: Correction<Dual<N>>,
+) -> Prediction<Dual<N>> {
     let mut prediction = Prediction::new();
-    course::course(record, settings, coefficients, |_, reading| prediction.readings.push(reading));
+    let keep = |_, reading| prediction.readings.push(reading);
+    course::course(record, settings, coefficients, correction, keep);
     prediction.conclude(record, coefficients.reel.line_length_m, |dual| dual.value);
     prediction
 }

@@ -1,6 +1,7 @@
 //! A history that drives the rig.
 
 use crate::error::{Error, Result};
+use crate::numerics::real::Real;
 use crate::physics::quasi_steady::Pull;
 
 /// Which quantity the truck is known to have applied.
@@ -35,6 +36,31 @@ impl Drive {
             Drive::Speed => Pull::Speed(value),
             Drive::Power => Pull::Power(value),
         }
+    }
+}
+
+/// How the instrument that recorded a history errs in all of its readings alike: what was applied is
+/// `gain · read + offset`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Correction<R = f64> {
+    /// What was applied over what was read.
+    pub gain: R,
+    /// What was applied when nothing was read, SI.
+    pub offset: R,
+}
+
+impl<R: Real> Correction<R> {
+    /// That of an instrument that does not err.
+    pub fn none() -> Self {
+        Correction { gain: R::constant(1.0), offset: R::constant(0.0) }
+    }
+}
+
+impl Correction {
+    /// What the instrument reads of a true value.
+    #[inline]
+    pub fn reading(&self, truth: f64) -> f64 {
+        (truth - self.offset) / self.gain
     }
 }
 

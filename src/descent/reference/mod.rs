@@ -5,6 +5,7 @@
 //! maximum are found by repeating the step they fall into with another length, so that nothing is
 //! read off an interpolant of lower order.
 
+mod detailed;
 pub mod radau;
 mod systems;
 
@@ -13,6 +14,7 @@ use super::outcome::{Fault, OUTCOME_COUNT, Outcome, OutcomeQuantity, TIME_LIMIT_
 use crate::physics::Coefficients;
 use crate::physics::motion::Observation;
 use crate::physics::quasi_steady::Pull;
+use crate::physics::space::Space;
 use radau::{Start, Tolerance};
 pub use systems::ReelDown;
 use systems::{Dynamic, QuasiSteady};
@@ -63,12 +65,7 @@ pub struct Trajectory {
 /// # Errors
 /// A [`Fault`] when the descent cannot be integrated; never a panic, whatever the coefficients.
 pub fn descend(c: &Coefficients<f64>, model: Model, tolerance: f64) -> Result<Outcome, Fault> {
-    match model {
-        Model::Dynamic => run(&Dynamic::new(c), tolerance, f64::INFINITY, &mut |_| ()),
-        Model::QuasiSteady => {
-            run(&QuasiSteady::new(c, Pull::Payload), tolerance, f64::INFINITY, &mut |_| ())
-        }
-    }
+    follow(c, model, Pull::Payload, (tolerance, f64::INFINITY), &mut |_| ())
 }
 
 /// Integrates one descent and keeps its trajectory, with steps no longer than `longest_step_s`.
@@ -83,12 +80,7 @@ pub fn trajectory(
 ) -> Result<Trajectory, Fault> {
     let mut samples = Vec::new();
     let mut keep = |sample| samples.push(sample);
-    let outcome = match model {
-        Model::Dynamic => run(&Dynamic::new(c), tolerance, longest_step_s, &mut keep),
-        Model::QuasiSteady => {
-            run(&QuasiSteady::new(c, Pull::Payload), tolerance, longest_step_s, &mut keep)
-        }
-    }?;
+    let outcome = follow(c, model, Pull::Payload, (tolerance, longest_step_s), &mut keep)?;
     Ok(Trajectory { outcome, samples })
 }
 
@@ -103,9 +95,33 @@ pub fn rig(
     longest_step_s: f64,
 ) -> Result<Trajectory, Fault> {
     let mut samples = Vec::new();
-    let system = QuasiSteady::new(c, pull);
-    let outcome = run(&system, tolerance, longest_step_s, &mut |sample| samples.push(sample))?;
+    let mut keep = |sample| samples.push(sample);
+    let outcome = follow(c, Model::QuasiSteady, pull, (tolerance, longest_step_s), &mut keep)?;
     Ok(Trajectory { outcome, samples })
+}
+
+/// Integrates with a model; the dynamic ones are pulled by the payload, whatever `pull` is.
+fn follow(
+    c: &Coefficients<f64>,
+    model: Model,
+    pull: Pull<f64>,
+    (tolerance, longest_step_s): (f64, f64),
+    keep: &mut dyn FnMut(Sample),
+) -> Result<Outcome, Fault> {
+    match model {
+        Model::Dynamic => run(&Dynamic::new(c), tolerance, longest_step_s, keep),
+        Model::QuasiSteady => run(&QuasiSteady::new(c, pull), tolerance, longest_step_s, keep),
+        Model::DetailedDynamic => {
+            let space = Space::<7, 4>::new::<7>();
+            let system = detailed::Dynamic::<7, 4, 32>::new(c, space);
+            run(&system, tolerance, longest_step_s, keep)
+        }
+        Model::DetailedQuasiSteady => {
+            let space = Space::<7, 4>::new::<7>();
+            let system = detailed::QuasiSteady::<7, 4, 30>::new(c, pull, space);
+            run(&system, tolerance, longest_step_s, keep)
+        }
+    }
 }
 
 /// The running maxima of the readings.
@@ -174,7 +190,8 @@ fn run<const N: usize>(
         peaks.note(&moment.observation);
         keep(sample(system, &start));
         if deployed || last {
-            return Ok(outcome(deployed, time, &state, &moment.observation, &peaks));
+            let temperatures = system.temperatures_k(&state);
+            return Ok(outcome(deployed, time, temperatures, &moment.observation, &peaks));
         }
         trends = end_trends;
         h = (attempted * radau::growth(step.error)).min(longest_step_s);
@@ -252,17 +269,17 @@ fn sample<const N: usize>(system: &impl ReelDown<N>, start: &Start<N>) -> Sample
     Sample {
         time_s: start.time,
         line_m: state[0],
-        temperatures_k: [state[N - 3], state[N - 2], state[N - 1]],
-        balloon_velocity_m_per_s: (N == 6).then(|| state[1]),
+        temperatures_k: system.temperatures_k(state),
+        balloon_velocity_m_per_s: system.balloon_velocity_m_per_s(state),
         torque_nm: moment.torque_nm,
         observation: moment.observation,
     }
 }
 
-fn outcome<const N: usize>(
+fn outcome(
     deployed: bool,
     time: f64,
-    state: &[f64; N],
+    [fluid_k, rotor_k, housing_k]: [f64; 3],
     last: &Observation<f64>,
     peaks: &Peaks,
 ) -> Outcome {
@@ -276,9 +293,9 @@ fn outcome<const N: usize>(
         (OutcomeQuantity::PeakReelSpeed, speed),
         (OutcomeQuantity::PeakPower, power),
         (OutcomeQuantity::PeakVelocity, velocity),
-        (OutcomeQuantity::FinalFluidTemperature, state[N - 3]),
-        (OutcomeQuantity::FinalRotorTemperature, state[N - 2]),
-        (OutcomeQuantity::FinalHousingTemperature, state[N - 1]),
+        (OutcomeQuantity::FinalFluidTemperature, fluid_k),
+        (OutcomeQuantity::FinalRotorTemperature, rotor_k),
+        (OutcomeQuantity::FinalHousingTemperature, housing_k),
     ] {
         values[quantity as usize] = value;
     }

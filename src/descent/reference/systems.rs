@@ -18,6 +18,14 @@ pub trait ReelDown<const N: usize>: Equations<N> {
     fn floor(&self) -> [f64; N];
     /// Line length, m.
     fn line_length_m(&self) -> f64;
+    /// Temperatures of fluid, rotors and housing, K; means where the model resolves them.
+    fn temperatures_k(&self, state: &[f64; N]) -> [f64; 3] {
+        [state[N - 3], state[N - 2], state[N - 1]]
+    }
+    /// Upward velocity of the tow balloon, m/s; none where nothing accelerates.
+    fn balloon_velocity_m_per_s(&self, _: &[f64; N]) -> Option<f64> {
+        None
+    }
 }
 
 /// The dynamic model of one descent.
@@ -36,11 +44,11 @@ pub struct QuasiSteady {
 }
 
 /// Velocities below this count absolutely, m/s.
-const VELOCITY_FLOOR: f64 = 0.1;
+pub(super) const VELOCITY_FLOOR: f64 = 0.1;
 /// Temperatures below this count absolutely, K.
-const TEMPERATURE_FLOOR: f64 = 100.0;
+pub(super) const TEMPERATURE_FLOOR: f64 = 100.0;
 /// Lengths of line below this count absolutely, m.
-const LINE_FLOOR: f64 = 1.0;
+pub(super) const LINE_FLOOR: f64 = 1.0;
 
 impl Dynamic {
     /// The dynamic model with the given constants.
@@ -67,12 +75,15 @@ impl QuasiSteady {
 }
 
 /// Each state as the variable of its own direction.
-fn variables<const N: usize>(state: &[f64; N]) -> [Dual<N>; N] {
+pub(super) fn variables<const N: usize>(state: &[f64; N]) -> [Dual<N>; N] {
     std::array::from_fn(|k| Dual::variable(state[k], k))
 }
 
 /// The derivative of readings along `rates`: gradient times velocity.
-fn along<const N: usize>(readings: &Observation<Dual<N>>, rates: &[f64; N]) -> Observation<f64> {
+pub(super) fn along<const N: usize>(
+    readings: &Observation<Dual<N>>,
+    rates: &[f64; N],
+) -> Observation<f64> {
     readings.map(|reading| reading.slopes.iter().zip(rates).map(|(s, r)| s * r).sum())
 }
 
@@ -86,6 +97,9 @@ impl Equations<6> for Dynamic {
 }
 
 impl ReelDown<6> for Dynamic {
+    fn balloon_velocity_m_per_s(&self, state: &DynamicState<f64>) -> Option<f64> {
+        Some(state[1])
+    }
     fn initial(&self) -> DynamicState<f64> {
         motion::initial(&self.plain)
     }

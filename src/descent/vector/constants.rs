@@ -96,6 +96,20 @@ constants! {
     initial_temperature,
     /// Rise speed before release, m/s.
     rise_speed,
+    /// `C1/C2`.
+    capacity_ratio,
+    /// The film's constants, as in [`crate::physics::film::Film`].
+    middle_radius,
+    /// Half the faces' width, m.
+    half_width,
+    /// Conduction across the film, 1/s.
+    conduction,
+    /// Cross group per rim speed, s/m.
+    cross_time,
+    /// Conduction along the metal, 1/s.
+    spreading,
+    /// Thermal expansion, 1/K.
+    expansion,
 }
 
 impl<V: Lanes> Constants<V> {
@@ -104,6 +118,7 @@ impl<V: Lanes> Constants<V> {
         self.cross_group.lanes_mut()[lane] = NEWTONIAN.0;
         self.cross_exponent.lanes_mut()[lane] = NEWTONIAN.1;
         self.cross_on.lanes_mut()[lane] = 0.0;
+        self.cross_time.lanes_mut()[lane] = 0.0;
     }
 }
 
@@ -164,6 +179,13 @@ impl<R: Real> Constants<R> {
             air_k: heat.air_k,
             initial_temperature: c.initial_temperature_k,
             rise_speed: c.balloon.rise_speed_m_per_s,
+            capacity_ratio: heat.fluid_capacity_j_per_k * per_c2,
+            middle_radius: c.film.middle_radius_m,
+            half_width: c.film.half_width_m,
+            conduction: c.film.conduction_per_s,
+            cross_time: c.film.cross_time_s_per_m,
+            spreading: c.film.spreading_per_s,
+            expansion: c.film.expansion_per_k,
         }
     }
 }
@@ -204,6 +226,10 @@ impl<V: Lanes> Constants<V> {
             one / capacities[1],
             self.initial_temperature,
             self.cross_exponent,
+            self.middle_radius,
+            self.half_width,
+            self.conduction,
+            self.spreading,
         ];
         let not_negative = [
             self.inertia,
@@ -217,6 +243,8 @@ impl<V: Lanes> Constants<V> {
             self.fluid_housing_3,
             self.rotor_housing_3,
             self.air_3,
+            self.cross_time,
+            self.expansion,
         ];
         let finite =
             [self.averaging_offset, self.free_lift, self.air_k, self.rise_speed, self.spool_pull];

@@ -1,6 +1,7 @@
 //! Which instruction set runs the kernel.
 
 use super::batch::Batch;
+use super::detailed;
 use super::dynamic::Dynamic;
 use super::quasi_steady::QuasiSteady;
 use super::queue::run;
@@ -28,7 +29,7 @@ pub(super) fn dispatch(
         InstructionSet::Avx2 if set.is_available() => unsafe {
             avx2(model, settings, batch, results)
         },
-        _ => with_lanes::<f64>(model, settings, batch, results),
+        _ => with_lanes::<f64, f64>(model, settings, batch, results),
     }
 }
 
@@ -40,8 +41,8 @@ fn avx512(
     batch: Batch,
     results: &mut [Result<Outcome, Fault>],
 ) -> Counts {
-    type Octets = crate::numerics::lanes::Pair<crate::numerics::lanes::avx512::Octet>;
-    with_lanes::<Octets>(model, settings, batch, results)
+    use crate::numerics::lanes::{Pair, avx512::Octet};
+    with_lanes::<Pair<Octet>, Octet>(model, settings, batch, results)
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -52,12 +53,13 @@ fn avx2(
     batch: Batch,
     results: &mut [Result<Outcome, Fault>],
 ) -> Counts {
-    type Quartets = crate::numerics::lanes::Pair<crate::numerics::lanes::avx2::Quartet>;
-    with_lanes::<Quartets>(model, settings, batch, results)
+    use crate::numerics::lanes::{Pair, avx2::Quartet};
+    with_lanes::<Pair<Quartet>, Quartet>(model, settings, batch, results)
 }
 
+/// Runs the kernel over lanes; the detailed models over narrower ones, whose states are wide enough by themselves.
 #[inline(always)]
-fn with_lanes<V: Lanes>(
+fn with_lanes<V: Lanes, W: Lanes>(
     model: Model,
     settings: &Settings,
     batch: Batch,
@@ -66,5 +68,17 @@ fn with_lanes<V: Lanes>(
     match model {
         Model::Dynamic => run::<V, Dynamic<V>, 7>(settings, batch, results),
         Model::QuasiSteady => run::<V, QuasiSteady<V>, 5>(settings, batch, results),
+        Model::DetailedDynamic if settings.fine_space() => {
+            run::<W, detailed::Dynamic<W, 7, 4>, 33>(settings, batch, results)
+        }
+        Model::DetailedQuasiSteady if settings.fine_space() => {
+            run::<W, detailed::QuasiSteady<W, 7, 4>, 31>(settings, batch, results)
+        }
+        Model::DetailedDynamic => {
+            run::<W, detailed::Dynamic<W, 6, 3>, 23>(settings, batch, results)
+        }
+        Model::DetailedQuasiSteady => {
+            run::<W, detailed::QuasiSteady<W, 6, 3>, 21>(settings, batch, results)
+        }
     }
 }

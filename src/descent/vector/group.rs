@@ -120,7 +120,8 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
         let moment = self.model.moment(&self.state);
         self.seen = self.model.observe(&self.state, &moment);
         let velocity = M::velocity(&moment);
-        let slopes = self.model.observable_rates(&moment, self.peaks.stiff_rate(velocity));
+        let slopes =
+            self.model.observable_rates(&moment, &self.state, self.peaks.stiff_rate(velocity));
         // Within the initial layer a start beyond it is not the descent's own state: nothing is there to be seen.
         let real = self.settled.le(self.state[N - 1]);
         self.peaks.arrive(real, velocity, &self.seen, &slopes);
@@ -164,7 +165,7 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
         let over_time = in_length.and(leg.lt(V::splat(2.5))).and(limit.le(step.state[N - 1]));
         let accepted = good.and(over_line.not()).and(over_time.not());
         let pace = self.model.clock().pace(M::velocity(moment));
-        let slopes = self.model.observable_rates(moment, step.slopes[0] * pace);
+        let slopes = self.model.observable_rates(moment, y, step.slopes[0] * pace);
         self.peaks.stepped(
             V::select(accepted, tried, zero),
             self.model.clock(),
@@ -209,7 +210,13 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
     /// [`Outcome::values`].
     #[inline(always)]
     pub fn outcomes(&self) -> [V; 10] {
-        outcomes::<V, M, V, N>(&self.state, self.finished, &self.seen, &self.peaks.values)
+        outcomes(
+            self.state[N - 1],
+            self.model.temperatures(&self.state),
+            self.finished,
+            &self.seen,
+            &self.peaks.values,
+        )
     }
 
     /// What became of a lane that has finished.
@@ -217,9 +224,10 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
     pub fn result(&self, lane: usize) -> Result<Outcome, Fault> {
         let of = |value: &V| value.lanes()[lane];
         let how = of(&self.finished);
-        let (state, seen) = (self.state.each_ref().map(of), self.seen.each_ref().map(of));
+        let temperatures = self.model.temperatures(&self.state).each_ref().map(of);
+        let (time, seen) = (of(&self.state[N - 1]), self.seen.each_ref().map(of));
         let peaks = self.peaks.values.each_ref().map(of);
-        let values = outcomes::<V, M, f64, N>(&state, how, &seen, &peaks);
+        let values = outcomes(time, temperatures, how, &seen, &peaks);
         if !values.iter().all(|value| value.is_finite()) {
             Err(Fault::NotFinite)
         } else if how == MANY {
@@ -234,26 +242,25 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
 
 /// The outcomes of the lanes, or of one of them, in the order of [`Outcome::values`].
 #[inline(always)]
-fn outcomes<V: Lanes, M: Model<V, N>, T: Lanes, const N: usize>(
-    state: &[T; N],
+fn outcomes<T: Lanes>(
+    time: T,
+    [fluid, rotor, housing]: [T; 3],
     finished: T,
     seen: &[T; OBSERVABLES],
     peaks: &[T; OBSERVABLES],
 ) -> [T; 10] {
-    let heat = M::FLUID;
     // A run in line length may land by a rounding beyond the limit; one in time ends on it.
     let limit = T::splat(TIME_LIMIT_S);
-    let time = state[N - 1].min(limit);
     [
-        T::select(finished.lt(T::splat(1.5)), time, limit),
+        T::select(finished.lt(T::splat(1.5)), time.min(limit), limit),
         seen[4],
         peaks[0],
         peaks[1],
         peaks[2].sqrt(),
         peaks[3],
         peaks[4],
-        state[heat],
-        state[heat + 1],
-        state[heat + 2],
+        fluid,
+        rotor,
+        housing,
     ]
 }

@@ -38,6 +38,7 @@
 mod batch;
 mod clock;
 mod constants;
+mod detailed;
 mod dispatch;
 mod dynamic;
 #[cfg(test)]
@@ -57,7 +58,7 @@ mod thermal;
 
 pub use crate::numerics::lanes::InstructionSet;
 pub use batch::{Batch, Draws};
-pub use settings::{Counts, Settings, default_tolerance};
+pub use settings::{Counts, Settings, TOLERANCES, default_tolerance};
 
 use super::model::Model;
 use super::outcome::{Fault, Outcome};

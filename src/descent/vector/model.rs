@@ -31,8 +31,6 @@ use crate::numerics::lanes::Lanes;
 pub trait Model<V: Lanes, const N: usize>: System<V, N> {
     /// Which model.
     const KIND: Kind;
-    /// Where the temperatures begin in the state.
-    const FLUID: usize;
     /// The model with the lanes' constants.
     fn new(constants: Constants<V>) -> Self;
     /// The lanes' constants.
@@ -53,8 +51,15 @@ pub trait Model<V: Lanes, const N: usize>: System<V, N> {
     fn settled(moment: &Self::Moment, share: V) -> V::Mask;
     /// Observables at a moment.
     fn observe(&self, y: &[V; N], moment: &Self::Moment) -> [V; OBSERVABLES];
-    /// Their derivatives in time, given that of the stiff variable.
-    fn observable_rates(&self, moment: &Self::Moment, stiff_rate: V) -> [V; OBSERVABLES];
+    /// Their derivatives in time at a state with its moment, given that of the stiff variable.
+    fn observable_rates(
+        &self,
+        moment: &Self::Moment,
+        y: &[V; N],
+        stiff_rate: V,
+    ) -> [V; OBSERVABLES];
+    /// Temperatures of fluid, rotors and housing, K; means where the model resolves them.
+    fn temperatures(&self, y: &[V; N]) -> [V; 3];
     /// The weighted error of a step, to be compared with the tolerance; see the module.
     fn error(&self, step: &Step<Self::Moment, V, N>) -> V;
 }
@@ -62,7 +67,7 @@ pub trait Model<V: Lanes, const N: usize>: System<V, N> {
 /// How near the end of the line is, from 0 (far) to 1: the 32nd power of the line's share, which rises
 /// within the last few per cent.
 #[inline(always)]
-fn nearness<V: Lanes>(share: V) -> V {
+pub(super) fn nearness<V: Lanes>(share: V) -> V {
     let mut late = share;
     for _ in 0..5 {
         late = late * late;
@@ -78,7 +83,6 @@ fn heat<V: Lanes>(late: V, fluid: V, rotor: V) -> V {
 
 impl<V: Lanes> Model<V, { dynamic::STATES }> for Dynamic<V> {
     const KIND: Kind = Kind::Dynamic;
-    const FLUID: usize = 3;
 
     #[inline(always)]
     fn new(constants: Constants<V>) -> Self {
@@ -124,8 +128,17 @@ impl<V: Lanes> Model<V, { dynamic::STATES }> for Dynamic<V> {
         Dynamic::observe(self, y, moment)
     }
     #[inline(always)]
-    fn observable_rates(&self, moment: &dynamic::Moment<V>, stiff_rate: V) -> [V; OBSERVABLES] {
+    fn observable_rates(
+        &self,
+        moment: &dynamic::Moment<V>,
+        _: &[V; 7],
+        stiff_rate: V,
+    ) -> [V; OBSERVABLES] {
         Dynamic::observable_rates(self, moment, stiff_rate)
+    }
+    #[inline(always)]
+    fn temperatures(&self, y: &[V; 7]) -> [V; 3] {
+        [y[3], y[4], y[5]]
     }
 
     #[inline(always)]
@@ -149,7 +162,6 @@ impl<V: Lanes> Model<V, { dynamic::STATES }> for Dynamic<V> {
 
 impl<V: Lanes> Model<V, { quasi_steady::STATES }> for QuasiSteady<V> {
     const KIND: Kind = Kind::QuasiSteady;
-    const FLUID: usize = 1;
 
     #[inline(always)]
     fn new(constants: Constants<V>) -> Self {
@@ -194,8 +206,17 @@ impl<V: Lanes> Model<V, { quasi_steady::STATES }> for QuasiSteady<V> {
         QuasiSteady::observe(self, y, moment)
     }
     #[inline(always)]
-    fn observable_rates(&self, moment: &quasi_steady::Moment<V>, _: V) -> [V; OBSERVABLES] {
+    fn observable_rates(
+        &self,
+        moment: &quasi_steady::Moment<V>,
+        _: &[V; 5],
+        _: V,
+    ) -> [V; OBSERVABLES] {
         QuasiSteady::observable_rates(self, moment)
+    }
+    #[inline(always)]
+    fn temperatures(&self, y: &[V; 5]) -> [V; 3] {
+        [y[1], y[2], y[3]]
     }
     #[inline(always)]
     fn error(&self, step: &Step<quasi_steady::Moment<V>, V, 5>) -> V {

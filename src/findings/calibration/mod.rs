@@ -1,11 +1,13 @@
 //! What rig runs taught of the card, what they could not, and what that does to the probability of a breach.
 
+mod agreement;
 mod laws;
 mod parameters;
 mod statements;
 
 use super::ReproductionFinding;
 use crate::calibration::Diagnosis;
+use crate::calibration::consistency::ChiSquared;
 use crate::calibration::screening::Suspicion;
 use crate::campaign::calibration::next_test::{NextTest, NextTests};
 use crate::campaign::calibration::predictive::{BAND, ChannelCheck, coverage_score};
@@ -27,8 +29,14 @@ pub struct CalibrationFinding {
     pub format: u32,
     /// The study's title.
     pub title: String,
-    /// Whether every gate held: only then is there a card.
+    /// Whether every gate held and nothing contradicts anything: only then is there a card.
     pub accepted: bool,
+    /// Whether the sampler's gates held.
+    pub converged: bool,
+    /// What the data contradict, a sentence each: each other, the card, the noise that was found.
+    pub doubts: Vec<String>,
+    /// The tests behind the doubts.
+    pub consistency: Vec<AgreementFinding>,
     /// The answer in a few sentences.
     pub statements: Vec<String>,
     /// The runs.
@@ -68,12 +76,29 @@ pub struct RunFinding {
     pub sha256: String,
     /// Whether the posterior has not seen it.
     pub held_out: bool,
+    /// Whether its file says that it was made up.
+    pub synthetic: bool,
     /// What drives its prediction.
     pub drive: &'static str,
     /// What is predicted.
     pub predicted: Vec<&'static str>,
     /// Number of moments.
     pub moments: usize,
+}
+
+/// A test of whether the data agree with something.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AgreementFinding {
+    /// What is tested: a run, or the posterior.
+    pub of: String,
+    /// Its channel, if only that is.
+    pub channel: Option<&'static str>,
+    /// Against what.
+    pub against: &'static str,
+    /// Chi-squared statistic, its degrees of freedom, and the probability of so much or more.
+    pub test: ChiSquared,
+    /// Smallest probability that raises no doubt.
+    pub least: f64,
 }
 
 /// Something suspicious.
@@ -201,16 +226,22 @@ pub fn calibration(
     let best = crate::numerics::columns::Columns::from_rows(&[&found.fit.point]);
     let best = found.likelihood.inputs(&best).row(0);
     let diagnosis = found.posterior.diagnosis.clone();
+    let (consistency, doubts) = agreement::agreement(study, found);
+    let converged = diagnosis.failures.is_empty();
     let mut finding = CalibrationFinding {
         format: 1,
         title: study.title.clone(),
-        accepted: diagnosis.failures.is_empty(),
+        accepted: converged && doubts.is_empty(),
+        converged,
+        doubts,
+        consistency,
         statements: Vec::new(),
         runs: run_findings
             .map(|(k, (planned, (run, sha256)))| RunFinding {
                 name: run.origin.clone(),
                 sha256: sha256.clone(),
                 held_out: k >= count,
+                synthetic: run.synthetic,
                 drive: planned.record.drive().name(),
                 predicted: planned.channels.iter().map(|(channel, _)| channel.name()).collect(),
                 moments: run.time_s.len(),

@@ -150,6 +150,23 @@ fn nuisances(found: &Calibration<'_>) -> Vec<ParameterFinding> {
                 let name = format!("initial temperature of {}", run.name);
                 summary(name, (1, "K"), (law.mean_k, law.sd_k), &values, learned)
             }
+            Coordinate::Gain(k) => {
+                let error = likelihood.systematic()[k];
+                let name =
+                    format!("{}: gain of the instrument, truth over reading", error.channel.name());
+                let values = column(&|z| 1.0 + error.gain * z);
+                summary(name, (1, ""), (1.0, error.gain), &values, learned)
+            }
+            Coordinate::Offset(k) => {
+                let error = likelihood.systematic()[k];
+                let unit = error.channel.quantity().of_difference().si_unit();
+                let name = format!(
+                    "{}: offset of the instrument, truth less reading",
+                    error.channel.name()
+                );
+                let values = column(&|z| error.offset * z);
+                summary(name, (1, unit), (0.0, error.offset), &values, learned)
+            }
             Coordinate::Sensor(k) | Coordinate::Discrepancy(k) | Coordinate::CorrelationTime(k) => {
                 let noise = &likelihood.noise()[k];
                 let unit = noise.channel.quantity().of_difference().si_unit();

@@ -68,7 +68,12 @@ pub fn refusal(findings: &[SuspicionFinding]) -> Option<String> {
 pub(super) fn statements(finding: &CalibrationFinding) -> Vec<String> {
     let mut said = Vec::new();
     let diagnosis = &finding.diagnosis;
-    if finding.accepted {
+    if finding.converged && !finding.doubts.is_empty() {
+        said.push(format!(
+            "The sampler has converged, but the posterior may not be believed: {}.",
+            finding.doubts.join("; ")
+        ));
+    } else if finding.converged {
         said.push(format!(
             "The posterior may be believed: {} draws, {:.0} effective, R-hat at most {:.3}, ln evidence {:.2} ± {:.2}.",
             finding.draws,
@@ -81,6 +86,15 @@ pub(super) fn statements(finding: &CalibrationFinding) -> Vec<String> {
         said.push(format!(
             "The posterior may not be believed, and no card is written: {}. Try more --particles.",
             diagnosis.failures.join("; ")
+        ));
+    }
+    let made_up = finding.runs.iter().filter(|run| run.synthetic).count();
+    if made_up > 0 {
+        said.push(format!(
+            "The data are synthetic: {} of {} runs were made up from a known brake and measure nothing. What follows shows \
+             the method, not a brake.",
+            made_up,
+            finding.runs.len()
         ));
     }
     let names = |dominated: bool| -> String {

@@ -55,7 +55,17 @@ pub(super) fn local(study: &Study, slopes: &Slopes) -> LocalFinding {
         let input = study.inputs.get(k).filter(|_| k < inputs);
         let of_surface =
             input.filter(|_| target.surface.is_some()).and_then(|i| i.group.as_deref());
-        let path = of_surface.map_or_else(|| target.path(), str::to_owned);
+        // The group's own name, unless other parameters are in it, too.
+        let alone = |group: &&str| {
+            let members = || study.inputs.iter().filter(|i| i.group.as_deref() == Some(group));
+            members().all(|i| i.target.parameter == target.parameter)
+        };
+        let path = match of_surface {
+            Some(group) => {
+                Some(group).filter(alone).unwrap_or(target.parameter.info().path).to_owned()
+            }
+            None => target.path(),
+        };
         if let Some((known, members)) = targets.iter_mut().find(|(known, _)| known.path == path) {
             known.inputs += 1;
             members.push(k);

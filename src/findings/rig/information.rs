@@ -4,8 +4,9 @@
 //! flights (known at build, or never; an input known on the day is each day's own, and the temperature at the
 //! start of a run is measured). Derivatives of every predicted reading come from dual numbers at the card's
 //! medians, along the force or speed history that the run would have. Each reading has a random error of its
-//! own; besides, load cell, speedometer and thermometers each have one systematic error, the same in every run,
-//! that is estimated along with the parameters, and every run has a random error of its initial temperature.
+//! own; besides, load cell, speedometer and every thermometer have a systematic error of their own, the same in every
+//! run, estimated along with the parameters, with the widths that `calibrate` assumes where none is stated; every run's
+//! initial temperature is not known.
 //!
 //! A systematic error is that of the truth over the reading: true force = read force · (1 + error), true
 //! temperature = read temperature + error. One scaling can never be learned on the rig: force, brake constant,
@@ -13,6 +14,7 @@
 //! the brake constant is never known better than the load cell (a test holds that).
 
 use super::run::cannot_compute;
+use crate::campaign::calibration::plan::INITIAL_SD_K;
 use crate::descent::driven::{
     Drive, Prediction, Reading, Record, Settings, differentiate, predict,
 };
@@ -31,8 +33,9 @@ const DIRECTIONS: usize = 8;
 const STEP: f64 = 1e-3;
 /// Relative step of differences in the drive's gain.
 const GAIN_STEP: f64 = 1e-4;
-/// Systematic errors that all runs share: gains of force and of speed, offset of the thermometers.
-pub const SHARED: usize = 3;
+/// Systematic errors that all runs share: gains of force and of speed, offsets of three thermometers (one that is not
+/// there keeps its prior, and teaches nothing).
+pub const SHARED: usize = 5;
 
 /// What the instruments read, and how well.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -47,28 +50,12 @@ pub struct Instruments {
     pub speed_noise_m_per_s: f64,
     /// Systematic error of the speedometer, as a share of the speed.
     pub speed_gain: f64,
-    /// Random error of a temperature reading, K; also that of a run's initial temperature.
+    /// Random error of a temperature reading, K.
     pub temperature_noise_k: f64,
-    /// Systematic error of the thermometers, K.
+    /// Systematic error of each thermometer, K.
     pub temperature_offset_k: f64,
     /// Which nodes have a thermometer: fluid, rotors, housing.
     pub thermometers: [bool; 3],
-}
-
-impl Default for Instruments {
-    /// A load cell and a speedometer for a truck's cab, thermocouples in fluid and housing; assumed.
-    fn default() -> Self {
-        Instruments {
-            every_s: 1.0,
-            force_noise_n: 50.0 * 4.448_221_615_260_5,
-            force_gain: 0.01,
-            speed_noise_m_per_s: 0.05 * 0.3048,
-            speed_gain: 0.01,
-            temperature_noise_k: 2.0 / 1.8,
-            temperature_offset_k: 2.0 / 1.8,
-            thermometers: [true, false, true],
-        }
-    }
 }
 
 impl Instruments {
@@ -215,8 +202,8 @@ pub fn information(
     let count = parameters.count();
     let mut columns = parameters.differentiate(&design, &record)?;
     let start = columns.pop().unwrap_or_default();
-    columns.extend(systematic(&design, &record, &nominal, &start, instruments)?);
-    columns.push(scaled(&start, instruments.temperature_noise_k));
+    columns.extend(systematic(&design, &record, &nominal, instruments)?);
+    columns.push(scaled(&start, INITIAL_SD_K));
     let total = count + SHARED + 1;
     let mut matrix = DMatrix::<f64>::zeros(total, total);
     for (row, reading) in nominal.readings.iter().enumerate() {
@@ -259,12 +246,11 @@ fn observed(drive: Drive, reading: &Reading<f64>, instruments: &Instruments) -> 
 
 /// Derivatives of the readings along the shared systematic errors, a prior standard deviation each. A gain of
 /// what drives the run moves the whole prediction, one of what is predicted lowers its reading; an offset
-/// lowers the readings of the thermometers and moves the initial temperature, which one of them has read.
+/// lowers the readings of its thermometer.
 fn systematic(
     design: &Design,
     record: &Record,
     nominal: &Prediction,
-    start: &[[f64; 6]],
     instruments: &Instruments,
 ) -> Result<[Vec<[f64; 6]>; SHARED]> {
     let gained = |sign: f64| {
@@ -294,13 +280,18 @@ fn systematic(
         Drive::Speed => (predicted(1), drive),
         Drive::Force | Drive::Power => (drive, predicted(2)),
     };
-    let own = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
-    let offset: Vec<[f64; 6]> =
-        start.iter().map(|row| std::array::from_fn(|k| row[k] - own[k])).collect();
+    // The thermometer's own readings fall by its offset.
+    let offset = |node: usize| -> Vec<[f64; 6]> {
+        let mut slopes = [0.0; 6];
+        slopes[3 + node] = -instruments.temperature_offset_k;
+        vec![slopes; nominal.readings.len()]
+    };
     Ok([
         scaled(&force, instruments.force_gain),
         scaled(&speed, instruments.speed_gain),
-        scaled(&offset, instruments.temperature_offset_k),
+        offset(0),
+        offset(1),
+        offset(2),
     ])
 }
 
@@ -356,6 +347,7 @@ pub fn posterior(count: usize, runs: &[&DMatrix<f64>]) -> DMatrix<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::equipment::Equipment;
     use super::*;
     use crate::numerics::elementary::{exp, ln_1p};
 
@@ -364,7 +356,8 @@ mod tests {
     fn analytic_no_set_of_runs_knows_the_brake_better_than_the_load_cell() {
         let study = Study::load(None, &[]).expect("the embedded study");
         let parameters = Parameters::new(&study);
-        let instruments = Instruments::default();
+        let equipment = Equipment::assumed(&study.design).expect("a flight");
+        let instruments = equipment.instruments;
         let runs: Vec<DMatrix<f64>> = [
             (Drive::Force, 22e3, 290.0, 220.0),
             (Drive::Speed, 0.7, 290.0, 210.0),

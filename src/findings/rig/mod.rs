@@ -1,41 +1,25 @@
 //! The horizontal rig: single runs, the paper's three modes as test options, and a plan of tests.
 
 mod band;
+mod equipment;
 pub mod information;
 pub mod plan;
 mod run;
 
 pub use band::{Band, HalfSpaces};
+pub use equipment::{Equipment, Stated};
 pub use information::Instruments;
 pub use plan::{Candidate, Combination, PlanFinding, PlanOptions, plan};
-pub use run::{Residual, RigRun, held, recorded};
+pub use run::{Residual, RigRun, WARM_UP, flight, held, recorded};
 
 use crate::descent::driven::Drive;
-use crate::descent::reference;
 use crate::descent::{Model, OutcomeQuantity};
 use crate::error::{Error, Result};
-use crate::physics::{Coefficients, Design};
 use crate::study::Study;
 use information::{Parameters, information, posterior};
-use plan::{Groups, flight_means, top_level};
-use run::cannot_compute;
+use plan::{Groups, top_level};
+use run::flight_means;
 use serde::Serialize;
-
-/// Accuracy of the flight that runs are compared with.
-const TOLERANCE: f64 = 1e-8;
-/// Fine enough for means and figures, s.
-const LONGEST_STEP_S: f64 = 0.25;
-
-/// The flight of a design, as the rig is modelled: quasi-steady.
-///
-/// # Errors
-/// If it cannot be integrated.
-pub fn flight(design: &Design) -> Result<RigRun> {
-    let c = Coefficients::new(design);
-    let run = reference::trajectory(&c, Model::QuasiSteady, TOLERANCE, LONGEST_STEP_S)
-        .map_err(cannot_compute)?;
-    Ok(RigRun { samples: run.samples, outcome: run.outcome, residuals: Vec::new() })
-}
 
 /// The three modes as options for a test.
 #[derive(Debug, Clone, Serialize)]
@@ -46,6 +30,8 @@ pub struct Comparison {
     pub proof_load_n: f64,
     /// The instruments.
     pub instruments: Instruments,
+    /// What of load and instruments is assumed.
+    pub assumed: Vec<String>,
     /// The flight: force, speed and power on the mean over time, SI.
     pub flight_means: [f64; 3],
     /// Energy that the flight puts into the brake, J.
@@ -95,14 +81,13 @@ pub struct ModeFinding {
 /// level that they allow; a level that is given is taken as it is.
 ///
 /// # Errors
-/// If a run or the flight cannot be computed, or the instruments' errors are impossible.
+/// If a run or the flight cannot be computed.
 pub fn compare(
     study: &Study,
-    proof_load_n: f64,
+    equipment: &Equipment,
     levels: [Option<f64>; 3],
-    instruments: &Instruments,
 ) -> Result<Comparison> {
-    instruments.validate()?;
+    let Equipment { proof_load_n, instruments, assumed } = equipment.clone();
     let design = &study.design;
     let flown = flight(design)?;
     let means = flight_means(design)?;
@@ -122,7 +107,7 @@ pub fn compare(
             })?,
         };
         let duration_s = run.outcome.get(OutcomeQuantity::Time);
-        let matrix = information(&parameters, instruments, start_k, drive, level, duration_s)?;
+        let matrix = information(&parameters, &instruments, start_k, drive, level, duration_s)?;
         let covariance = posterior(parameters.count(), &[&matrix]);
         let (peak_force_n, peak_force_time_s) = run.peak(|s| s.observation[1]);
         modes.push(ModeFinding {
@@ -144,7 +129,8 @@ pub fn compare(
     Ok(Comparison {
         model: Model::QuasiSteady.name(),
         proof_load_n,
-        instruments: instruments.clone(),
+        instruments,
+        assumed,
         flight_means: means,
         flight_energy_j: energy,
         flight_peak_fluid_k: flown.outcome.get(OutcomeQuantity::PeakFluidTemperature),

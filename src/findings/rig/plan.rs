@@ -1,8 +1,9 @@
 //! Which runs on the rig are worth most: every combination of up to four candidates.
 
 use super::band::{Band, HalfSpaces};
+use super::equipment::Equipment;
 use super::information::{Instruments, Parameters, information, posterior};
-use super::run::{RigRun, held};
+use super::run::{RigRun, flight_means, held};
 use crate::campaign::{Progress, in_parallel};
 use crate::descent::OutcomeQuantity;
 use crate::descent::driven::Drive;
@@ -26,12 +27,10 @@ const HALVINGS: usize = 30;
 pub struct PlanOptions {
     /// Runs available, 1 to [`MOST_RUNS`].
     pub runs: usize,
-    /// Load that no run may exceed, N.
-    pub proof_load_n: f64,
     /// Temperatures that a run can be started at, K.
     pub starts_k: Vec<f64>,
-    /// The instruments.
-    pub instruments: Instruments,
+    /// Proof load and instruments.
+    pub equipment: Equipment,
 }
 
 /// One run that could be made.
@@ -73,6 +72,8 @@ pub struct PlanFinding {
     pub proof_load_n: f64,
     /// The instruments.
     pub instruments: Instruments,
+    /// What of load and instruments is assumed.
+    pub assumed: Vec<String>,
     /// Paths of the parameters; like ones as one, with how many; last, the brake constant.
     pub parameters: Vec<(String, usize)>,
     /// The band of P without a run.
@@ -89,6 +90,10 @@ pub struct PlanFinding {
     pub searched: usize,
     /// The best combinations of 1, 2, … runs, the best first.
     pub best: Vec<Vec<Combination>>,
+    /// The best combination of 1, 2, … runs none of which is at constant power; as long as there is one.
+    pub without_power: Vec<Combination>,
+    /// The study's own initial temperature, K: a run from another needs the brake cooled or heated first.
+    pub start_k: f64,
 }
 
 /// The greatest level up to `most` that a limit allows: by halving, as loads and temperatures grow with it.
@@ -102,29 +107,6 @@ fn greatest(most: f64, allowed: impl Fn(f64) -> bool) -> Option<f64> {
         if allowed(middle) { low = middle } else { high = middle }
     }
     (low > 0.05 * most).then_some(low)
-}
-
-/// What the flight pulls with on the mean over its time: force, speed, power.
-///
-/// # Errors
-/// If the flight cannot be computed.
-pub fn flight_means(design: &Design) -> Result<[f64; 3]> {
-    let flight = super::flight(design)?;
-    let (first, last) = match (flight.samples.first(), flight.samples.last()) {
-        (Some(first), Some(last)) => (first.time_s, last.time_s),
-        _ => return Err(Error::argument("the flight has no moments")),
-    };
-    let mean = |k: usize| {
-        let area: f64 = flight
-            .samples
-            .windows(2)
-            .map(|p| {
-                0.5 * (p[1].time_s - p[0].time_s) * (p[0].observation[k] + p[1].observation[k])
-            })
-            .sum();
-        area / (last - first)
-    };
-    Ok([mean(1), mean(4), mean(3)])
 }
 
 /// The level of a mode that is nearest to the flight's mean within the proof load and the fluid's limit, and
@@ -176,7 +158,9 @@ fn candidates(
     let found = in_parallel(&wanted, |&(start_k, drive, mean)| -> Result<Attempt> {
         let mut design = parameters.median.clone();
         design.set(Target::whole(Parameter::InitialTemperature), start_k);
-        let Some((top, run)) = top_level(study, &design, drive, mean, options.proof_load_n) else {
+        let Some((top, run)) =
+            top_level(study, &design, drive, mean, options.equipment.proof_load_n)
+        else {
             return Ok(Err(format!(
                 "constant {} from {start_k:.1} K: no level keeps the proof load, the fluid's limit and the time",
                 drive.name()
@@ -193,7 +177,7 @@ fn candidates(
             }
             let get = |quantity| run.outcome.get(quantity);
             let duration_s = get(OutcomeQuantity::Time);
-            let instruments = &options.instruments;
+            let instruments = &options.equipment.instruments;
             let matrix = information(parameters, instruments, start_k, drive, level, duration_s)?;
             let candidate = Candidate {
                 mode: drive.name(),
@@ -239,7 +223,6 @@ fn multisets(count: usize, size: usize) -> Vec<Vec<usize>> {
 /// # Errors
 /// Options that are impossible; a study without limits or parameters; runs that cannot be computed.
 pub fn plan(study: &Study, options: &PlanOptions) -> Result<PlanFinding> {
-    options.instruments.validate()?;
     if !(1..=MOST_RUNS).contains(&options.runs) {
         let problem = format!("{} runs cannot be planned: 1 to {MOST_RUNS} can", options.runs);
         return Err(Error::argument(problem));
@@ -270,13 +253,18 @@ pub fn plan(study: &Study, options: &PlanOptions) -> Result<PlanFinding> {
             remaining: groups.remaining(&covariance),
         }
     };
-    let (mut searched, mut best) = (0, Vec::new());
+    let (mut searched, mut best, mut without_power) = (0, Vec::new(), Vec::new());
     for size in 1..=options.runs {
         let sets = multisets(candidates.len(), size);
         searched += sets.len();
         let deviations = in_parallel(&sets, |runs| spaces.index_deviation(&after(runs)));
         let mut order: Vec<usize> = (0..sets.len()).collect();
         order.sort_by(|&a, &b| deviations[a].total_cmp(&deviations[b]));
+        // A driver can hold a force or a speed; a power asks for both to change all the time.
+        let simple =
+            |runs: &&Vec<usize>| runs.iter().all(|&k| candidates[k].0.drive != Drive::Power);
+        let first = order.iter().map(|&k| &sets[k]).find(simple);
+        without_power.extend(first.map(&combination));
         let top: Vec<&Vec<usize>> = order.iter().take(REPORTED).map(|&k| &sets[k]).collect();
         best.push(in_parallel(&top, |runs| combination(runs)));
     }
@@ -285,8 +273,9 @@ pub fn plan(study: &Study, options: &PlanOptions) -> Result<PlanFinding> {
     let now = spaces.band(seed, &DMatrix::identity(count, count));
     let candidates = candidates.iter().zip(bands);
     Ok(PlanFinding {
-        proof_load_n: options.proof_load_n,
-        instruments: options.instruments.clone(),
+        proof_load_n: options.equipment.proof_load_n,
+        instruments: options.equipment.instruments.clone(),
+        assumed: options.equipment.assumed.clone(),
         parameters: groups.names,
         now,
         limits: spaces.probabilities.clone(),
@@ -295,6 +284,8 @@ pub fn plan(study: &Study, options: &PlanOptions) -> Result<PlanFinding> {
         refused,
         searched,
         best,
+        without_power,
+        start_k: study.design.get(Parameter::InitialTemperature),
     })
 }
 

@@ -3,7 +3,7 @@
 use crate::descent::driven::{Drive, Prediction, Reading, Settings, predict};
 use crate::descent::outcome::OUTCOME_COUNT;
 use crate::descent::reference::{self, Sample};
-use crate::descent::{Fault, Outcome, OutcomeQuantity};
+use crate::descent::{Fault, Model, Outcome, OutcomeQuantity};
 use crate::error::{Error, Result};
 use crate::physics::quasi_steady::Pull;
 use crate::physics::{Coefficients, Design};
@@ -12,13 +12,18 @@ use crate::study::measured_run::CHANNELS;
 use crate::units::Quantity;
 use serde::Serialize;
 
-/// Accuracy of a run that is held.
+/// Accuracy of a flight and of a run that is held.
 const TOLERANCE: f64 = 1e-8;
 /// Fine enough to draw from, s.
 const LONGEST_STEP_S: f64 = 0.25;
 /// Share of the run's time that is left out when the rise of temperature is judged: the fluid first warms
 /// up above the rotors, in a few times `C1/K12` = 6 s.
-const WARM_UP: f64 = 0.1;
+pub const WARM_UP: f64 = 0.1;
+
+/// Step at which a course is looked at for its straight parts, s.
+const LINE_STEP_S: f64 = 1.0;
+/// Steps of the search for a line's slope: the bracket shrinks by a third each.
+const SLOPE_STEPS: usize = 60;
 
 /// Relative difference below which readings are the same.
 const EQUAL: f64 = 1e-9;
@@ -73,12 +78,16 @@ impl RigRun {
     }
 
     /// How far the fluid's temperature strays from a straight line in time, over its rise, once the first
-    /// tenth of the run is over. The paper does not say how it measured "nearly linear"; see
-    /// `tests/truth/paper_statements.rs` for what other measures give.
+    /// tenth of the run is over.
     pub fn departure_from_linear(&self) -> Option<f64> {
+        self.departure_from_linear_after(WARM_UP)
+    }
+
+    /// The same once a share of the run is over.
+    pub fn departure_from_linear_after(&self, share: f64) -> Option<f64> {
         let begin = self.samples.first()?.time_s;
         let end = self.samples.last()?.time_s;
-        let from = begin + WARM_UP * (end - begin);
+        let from = begin + share * (end - begin);
         let warm = self.samples.partition_point(|s| s.time_s < from);
         let samples = self.samples.get(warm..)?;
         let (first, last) = (samples.first()?, samples.last()?);
@@ -90,6 +99,50 @@ impl RigRun {
         let strays = samples.iter().map(|s| (s.observation[0] - straight(s)).abs());
         Some(strays.fold(0.0, f64::max) / rise).filter(|departure| departure.is_finite())
     }
+
+    /// The longest time, s, for which the fluid's temperature stays within so many kelvin of a straight line.
+    pub fn longest_linear_rise_s(&self, within_k: f64) -> f64 {
+        let mut points: Vec<[f64; 2]> = Vec::new();
+        for sample in &self.samples {
+            if points.last().is_none_or(|last| sample.time_s >= last[0] + LINE_STEP_S) {
+                points.push([sample.time_s, sample.temperatures_k[0]]);
+            }
+        }
+        longest_near_a_line(&points, within_k)
+    }
+}
+
+/// The longest stretch of points (x, y) that lie within a distance in y of one straight line. A part of such a stretch is
+/// one, so that two ends that only go forward find it.
+fn longest_near_a_line(points: &[[f64; 2]], within: f64) -> f64 {
+    let (mut first, mut longest) = (0, 0.0f64);
+    for last in 0..points.len() {
+        while least_spread(&points[first..=last]) > 2.0 * within {
+            first += 1;
+        }
+        longest = longest.max(points[last][0] - points[first][0]);
+    }
+    longest
+}
+
+/// The least distance between two parallel lines, along y, that hold all points: convex in the slope.
+fn least_spread(points: &[[f64; 2]]) -> f64 {
+    if points.len() < 3 {
+        return 0.0;
+    }
+    let slopes =
+        || points.windows(2).map(|pair| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0]));
+    let (mut low, mut high) =
+        (slopes().fold(f64::INFINITY, f64::min), slopes().fold(f64::NEG_INFINITY, f64::max));
+    let spread = |slope: f64| {
+        let off = || points.iter().map(|[x, y]| y - slope * x);
+        off().fold(f64::NEG_INFINITY, f64::max) - off().fold(f64::INFINITY, f64::min)
+    };
+    for _ in 0..SLOPE_STEPS {
+        let third = (high - low) / 3.0;
+        if spread(low + third) < spread(high - third) { high -= third } else { low += third }
+    }
+    spread(0.5 * (low + high))
 }
 
 /// What a run that cannot be computed says.
@@ -98,6 +151,40 @@ pub(super) fn cannot_compute(fault: Fault) -> Error {
         "the run cannot be computed ({}): is the pull one that the brake can take?",
         fault.name()
     ))
+}
+
+/// The flight of a design, as the rig is modelled: quasi-steady.
+///
+/// # Errors
+/// If it cannot be integrated.
+pub fn flight(design: &Design) -> Result<RigRun> {
+    let c = Coefficients::new(design);
+    let run = reference::trajectory(&c, Model::QuasiSteady, TOLERANCE, LONGEST_STEP_S)
+        .map_err(cannot_compute)?;
+    Ok(RigRun { samples: run.samples, outcome: run.outcome, residuals: Vec::new() })
+}
+
+/// What the flight pulls with on the mean over its time: force, speed, power.
+///
+/// # Errors
+/// If the flight cannot be computed.
+pub(super) fn flight_means(design: &Design) -> Result<[f64; 3]> {
+    let flight = flight(design)?;
+    let (first, last) = match (flight.samples.first(), flight.samples.last()) {
+        (Some(first), Some(last)) => (first.time_s, last.time_s),
+        _ => return Err(Error::argument("the flight has no moments")),
+    };
+    let mean = |k: usize| {
+        let area: f64 = flight
+            .samples
+            .windows(2)
+            .map(|p| {
+                0.5 * (p[1].time_s - p[0].time_s) * (p[0].observation[k] + p[1].observation[k])
+            })
+            .sum();
+        area / (last - first)
+    };
+    Ok([mean(1), mean(4), mean(3)])
 }
 
 /// A run in which the truck holds a force, a speed or a power, SI.
@@ -250,5 +337,22 @@ impl Residual {
     pub fn quantity(&self) -> Quantity {
         let found = CHANNELS.iter().find(|(name, ..)| *name == self.channel);
         found.map_or(Quantity::Number, |(_, quantity, _)| quantity.of_difference())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// y = x²/100 up to 100: within ± e of a line over any stretch of length l with l²/800 = e (Chebyshev).
+    #[test]
+    fn analytic_a_parabola_is_near_a_line_over_a_stretch_of_known_length() {
+        let points: Vec<[f64; 2]> =
+            (0..=1000).map(|k| f64::from(k) / 10.0).map(|x| [x, x * x / 100.0]).collect();
+        let longest = longest_near_a_line(&points, 1.0);
+        // To the step of the points.
+        assert!((longest - 800.0_f64.sqrt()).abs() <= 0.11, "{longest}");
+        let straight: Vec<[f64; 2]> = (0..50).map(|k| [f64::from(k), 3.0 * f64::from(k)]).collect();
+        assert!((longest_near_a_line(&straight, 1e-9) - 49.0).abs() < 1e-12);
     }
 }

@@ -3,7 +3,7 @@
 use super::{Blocks, NestedState, hypercube, share, varying};
 use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
-use crate::numerics::interval::Estimate;
+use crate::numerics::interval::{Earned, Estimate};
 use crate::reliability::draws::open_uniform;
 use crate::reliability::jackknife::delete_a_group;
 use crate::streams::{Purpose, stream};
@@ -17,6 +17,8 @@ pub struct ShareSample {
     rows: usize,
     inner: usize,
     factors: usize,
+    /// Which factors are all of the unknowns.
+    whole: Vec<bool>,
     margins: Columns,
 }
 
@@ -89,7 +91,8 @@ pub fn share_sample(
         }
     }
     blocks.finish()?;
-    Ok(ShareSample { rows, inner, factors: factors.len(), margins })
+    let whole = factors.iter().map(|f| unknown.iter().all(|j| f.contains(j))).collect();
+    Ok(ShareSample { rows, inner, factors: factors.len(), whole, margins })
 }
 
 /// Variance, first-order and total indices.
@@ -191,13 +194,22 @@ pub fn shares(
             rest.indices()
         })
         .collect();
-    let estimate = |value: f64, of: &dyn Fn(&Indices) -> f64| {
+    let estimate = |j: usize, value: f64, of: &dyn Fn(&Indices) -> f64| {
+        if sample.whole[j] {
+            return Estimate {
+                value: Some(1.0),
+                standard_error: Some(0.0),
+                interval: Earned::none(
+                    "a factor that is all that is unknown carries all of the band, by definition",
+                ),
+            };
+        }
         let parts: Vec<f64> = without.iter().map(of).collect();
         delete_a_group(value, &parts, confidence, "delete-a-group jackknife over rows")
     };
     Ok(Shares {
         variance,
-        first: first.iter().enumerate().map(|(j, &x)| estimate(x, &|part| part.1[j])).collect(),
-        total: total.iter().enumerate().map(|(j, &x)| estimate(x, &|part| part.2[j])).collect(),
+        first: first.iter().enumerate().map(|(j, &x)| estimate(j, x, &|part| part.1[j])).collect(),
+        total: total.iter().enumerate().map(|(j, &x)| estimate(j, x, &|part| part.2[j])).collect(),
     })
 }
