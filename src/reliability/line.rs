@@ -369,9 +369,8 @@ impl Sampling<'_> {
                 .collect();
             let crossings = self.follow(evaluator, group, &mirror, &mut lines)?;
             self.probe(evaluator, group, k, &mirror, (&lines, &crossings), first + begin as u64)?;
-            for (li, crossings) in crossings.iter().enumerate() {
+            for crossings in &crossings {
                 let value = self.value(group, crossings);
-                if value.is_none() { eprintln!("LOST {k} {crossings:?} {:?}", lines[li].seen); }
                 self.lines[k].take(value);
             }
         }
@@ -581,10 +580,11 @@ impl Sampling<'_> {
             evaluations: 0,
             faults: lost as u64,
             diagnostics: vec![format!(
-                "{} lines along {} directions, in {scrambles} scrambles; {surprises} of {probes} probes breach \
+                "{} lines along {} directions, in {scrambles} scrambles, tail index {:.2}; {surprises} of {probes} probes breach \
                  otherwise than the lines' crossings say",
                 all,
-                self.lines.len()
+                self.lines.len(),
+                super::weighted::tail_index(&self.lines.iter().flat_map(|l| l.values.iter().map(|v| v.0)).collect::<Vec<_>>()).unwrap_or(-9.0)
             )],
         };
         widen(&mut estimate, open);
