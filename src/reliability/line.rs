@@ -7,6 +7,11 @@
 //! its limits' half lines, at either end of the line. Limits of a union whose gradients point elsewhere get lines of
 //! their own, of which only what no earlier limit breaches counts.
 //!
+//! Where the limit bends towards the origin across the direction, lines far out carry far more than the others, and
+//! plain ones meet too few of them: a fifth of the lines is spread twice as wide, and all are weighed by the balance
+//! heuristic. Without these the interval held RP14 (a shaft) in 85 seeds of a hundred, with them in 97. In many
+//! dimensions wide lines count for nothing, and such a limit would be held as seldom.
+//!
 //! What is taken for granted is checked: points at random places of every fourth line ask whether they breach as the
 //! crossings say, limits are searched for several design points, and lines that carry the estimate alone are
 //! noticed. Where a check fails the whole is done again by lines that are searched over their whole length
@@ -28,6 +33,7 @@ use super::vectors::{dot, norm};
 use super::weighted::{WeightChecks, WeightedBreaches};
 use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
+use crate::numerics::elementary::{exp, ln};
 use crate::numerics::interval::{Earned, Interval};
 use crate::numerics::special::normal;
 use crate::sampling::{Design, Sampler};
@@ -66,6 +72,11 @@ impl Default for LineOptions {
 
 /// Lines of a scramble after which the checks are asked first.
 const FIRST_LINES: u64 = 8;
+/// One line in so many is spread …
+const WIDE_SHARE: u64 = 4;
+/// … by this factor: where lines far from the design point carry much more than those near it, plain ones would
+/// meet too few of them to know what is missing.
+const WIDE: f64 = 2.0;
 /// Limits less probable than this share of the most probable one get no lines of their own.
 const NEGLIGIBLE_SHARE: f64 = 1e-4;
 /// From this first-order probability up lines across a second design point would be met by chance; below it
@@ -135,7 +146,42 @@ struct Spent {
     faults: u64,
 }
 
+/// How the lines of a group lie across its direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Spread {
+    Plain,
+    Wide,
+}
+
+impl Spread {
+    fn factor(self) -> f64 {
+        match self {
+            Spread::Plain => 1.0,
+            Spread::Wide => WIDE,
+        }
+    }
+
+    /// Lines of this spread where `plain` are of the plain one.
+    fn lines(self, plain: u64) -> u64 {
+        match self {
+            Spread::Plain => plain,
+            Spread::Wide => (plain / WIDE_SHARE).max(1),
+        }
+    }
+
+    /// What a line counts for, by the balance heuristic (Veach and Guibas, SIGGRAPH 1995): the plain density there over
+    /// the mean density of all lines, times this spread's share of the lines.
+    fn weight(self, across: &[f64], plain: u64) -> f64 {
+        let square = dot(across, across);
+        let dimension = across.len() as f64;
+        let wide = exp(0.5 * square * (1.0 - 1.0 / (WIDE * WIDE)) - dimension * ln(WIDE));
+        let (own, wide_share) = (self.lines(plain) as f64, Spread::Wide.lines(plain) as f64 * wide);
+        own / (plain as f64 + wide_share)
+    }
+}
+
 /// Lines along one direction.
+#[derive(Clone)]
 struct Group {
     direction: Vec<f64>,
     /// Where crossings are expected.
@@ -170,6 +216,8 @@ fn scrambled(
     for group in &mut found {
         group.slopes = slopes(&mut evaluator, group, &members)?;
     }
+    let found: Vec<(Group, Spread)> =
+        found.into_iter().flat_map(|g| [(g.clone(), Spread::Plain), (g, Spread::Wide)]).collect();
     let mut sampling = Sampling {
         members: &members,
         union: event.is_union() || members.len() == 1,
@@ -180,8 +228,8 @@ fn scrambled(
     // A few lines show soon enough where a line has more than one crossing.
     let mut count = options.lines.min(FIRST_LINES);
     let fit = loop {
-        for (k, group) in found.iter().enumerate() {
-            sampling.extend(&mut evaluator, group, k, count)?;
+        for (k, (group, spread)) in found.iter().enumerate() {
+            sampling.extend(&mut evaluator, (group, *spread), k, count)?;
         }
         let fit = sampling.estimate(event);
         if count == options.lines || matches!(fit, Err((_, true))) {
@@ -312,8 +360,8 @@ fn joint_group(point: &DesignPoint, members: usize) -> Group {
 struct Lines {
     /// Lines of each scramble.
     count: u64,
-    /// Probability on each line with faults as safe and as breaches; line k is of scramble k mod R.
-    values: Vec<(f64, f64)>,
+    /// Each line; line k is of scramble k mod R.
+    values: Vec<Value>,
     /// What the tolerance of the crossings leaves open, summed over the lines.
     open: f64,
     /// Lines without an answer.
@@ -324,9 +372,18 @@ struct Lines {
     questioned: f64,
 }
 
+/// A line's probability with faults as safe and as breaches, and what it counts for.
+#[derive(Clone, Copy)]
+struct Value {
+    safe: f64,
+    breach: f64,
+    weight: f64,
+}
+
 /// A line under way.
 struct Line {
     across: Vec<f64>,
+    weight: f64,
     /// Where it was evaluated, and every member's margin there.
     seen: Vec<(f64, Vec<f64>)>,
 }
@@ -344,16 +401,17 @@ impl Sampling<'_> {
     fn extend(
         &mut self,
         evaluator: &mut Evaluator,
-        group: &Group,
+        (group, spread): (&Group, Spread),
         k: usize,
-        count: u64,
+        plain: u64,
     ) -> Result<()> {
+        let count = spread.lines(plain);
         let scrambles = u64::from(self.options.scrambles);
         let (first, end) = (self.lines[k].count * scrambles, count * scrambles);
         let across = evaluator.dimension() - 1;
         let seed = self.options.seed ^ (k as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let mut normals = Columns::new((end - first) as usize, across.max(1));
-        let all = scrambles * self.options.lines;
+        let all = scrambles * spread.lines(self.options.lines);
         let scrambles = self.options.scrambles;
         let purpose = Purpose::LineSampling;
         Sampler::new(Design::Sobol, across.max(1), all, scrambles, seed, purpose)?
@@ -362,16 +420,22 @@ impl Sampling<'_> {
         for begin in (0..normals.rows()).step_by(BATCH) {
             let rows = begin..(begin + BATCH).min(normals.rows());
             let mut lines: Vec<Line> = rows
-                .map(|row| Line {
-                    across: (0..across).map(|j| normal::quantile(normals.get(row, j))).collect(),
-                    seen: Vec::new(),
+                .map(|row| {
+                    let across: Vec<f64> = (0..across)
+                        .map(|j| spread.factor() * normal::quantile(normals.get(row, j)))
+                        .collect();
+                    Line {
+                        weight: spread.weight(&across, self.options.lines),
+                        across,
+                        seen: Vec::new(),
+                    }
                 })
                 .collect();
             let crossings = self.follow(evaluator, group, &mirror, &mut lines)?;
             self.probe(evaluator, group, k, &mirror, (&lines, &crossings), first + begin as u64)?;
-            for crossings in &crossings {
+            for (line, crossings) in lines.iter().zip(&crossings) {
                 let value = self.value(group, crossings);
-                self.lines[k].take(value);
+                self.lines[k].take(line.weight, value);
             }
         }
         self.lines[k].count = count;
@@ -512,7 +576,7 @@ impl Sampling<'_> {
             found.probes += 1;
             if seen != said {
                 found.surprises += 1;
-                found.questioned += 2.0 * far * normal::density(t);
+                found.questioned += 2.0 * far * normal::density(t) * lines[line].weight;
             }
         }
         Ok(())
@@ -524,19 +588,35 @@ impl Sampling<'_> {
         let (mut low, mut high) = (vec![0.0; scrambles], vec![0.0; scrambles]);
         let (mut open, mut questioned, mut lost, mut all) = (0.0, 0.0, 0, 0);
         let (mut sum, mut squares, mut largest) = (0.0, 0.0, 0.0_f64);
+        // The weights' mean is 1: what it differs by is taken off, so that lines that agree leave no error.
+        let weighted = |of: fn(&Value) -> f64| -> f64 {
+            let mean = |lines: &Lines| {
+                lines.values.iter().map(of).sum::<f64>() / lines.values.len().max(1) as f64
+            };
+            self.lines.iter().map(mean).sum::<f64>()
+        };
+        let groups = 0.5 * self.lines.len() as f64;
+        let unit = weighted(|value| value.weight) / groups;
+        let level = |of: fn(&Value) -> f64| weighted(of) / unit / groups;
+        let (level_low, level_high) =
+            (level(|v| v.weight * v.safe), level(|v| v.weight * v.breach));
         for lines in &self.lines {
-            for (k, &(safe, breach)) in lines.values.iter().enumerate() {
-                low[k % scrambles] += safe / lines.count as f64;
-                high[k % scrambles] += breach / lines.count as f64;
-                sum += safe;
-                squares += safe * safe;
-                largest = largest.max(safe);
+            for (k, value) in lines.values.iter().enumerate() {
+                let share = value.weight / lines.count as f64;
+                low[k % scrambles] += share * (value.safe - level_low);
+                high[k % scrambles] += share * (value.breach - level_high);
+                let part = share * value.safe;
+                sum += part;
+                squares += part * part;
+                largest = largest.max(part);
             }
             open += lines.open / lines.values.len() as f64;
             questioned += lines.questioned / lines.probes.max(1) as f64;
             lost += lines.lost;
             all += lines.values.len();
         }
+        low.iter_mut().for_each(|p| *p += groups * level_low);
+        high.iter_mut().for_each(|p| *p += groups * level_high);
         let probability = low.iter().sum::<f64>() / scrambles as f64;
         let surprises: usize = self.lines.iter().map(|lines| lines.surprises).sum();
         let probes: usize = self.lines.iter().map(|lines| lines.probes).sum();
@@ -580,11 +660,10 @@ impl Sampling<'_> {
             evaluations: 0,
             faults: lost as u64,
             diagnostics: vec![format!(
-                "{} lines along {} directions, in {scrambles} scrambles, tail index {:.2}; {surprises} of {probes} probes breach \
+                "{} lines along {} directions, in {scrambles} scrambles; {surprises} of {probes} probes breach \
                  otherwise than the lines' crossings say",
                 all,
-                self.lines.len(),
-                super::weighted::tail_index(&self.lines.iter().flat_map(|l| l.values.iter().map(|v| v.0)).collect::<Vec<_>>()).unwrap_or(-9.0)
+                self.lines.len().div_ceil(2)
             )],
         };
         widen(&mut estimate, open);
@@ -593,17 +672,18 @@ impl Sampling<'_> {
 }
 
 impl Lines {
-    fn take(&mut self, value: Option<(f64, f64)>) {
-        match value {
+    fn take(&mut self, weight: f64, value: Option<(f64, f64)>) {
+        let (safe, breach) = match value {
             Some((value, open)) => {
-                self.values.push((value, value));
-                self.open += open;
+                self.open += weight * open;
+                (value, value)
             }
             None => {
-                self.values.push((0.0, 1.0));
                 self.lost += 1;
+                (0.0, 1.0)
             }
-        }
+        };
+        self.values.push(Value { safe, breach, weight });
     }
 }
 

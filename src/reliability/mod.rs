@@ -41,7 +41,7 @@ pub mod log_replicates;
 pub mod mises_fisher_nakagami;
 pub mod multinormal;
 pub mod quasi_newton;
-pub mod searched_lines;
+mod searched_lines;
 pub mod sorm;
 pub mod subset;
 pub mod system;
