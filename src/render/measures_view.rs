@@ -79,7 +79,9 @@ fn ranking(finding: &MeasuresFinding, found: &RankingFinding) -> Ranking {
          S₁ is the first-order index, slope the derivative at the means. \
          The measures reuse the first samples of the run: first order by ranks and regressions {}, Borgonovo's δ and \
          PAWN {}, HSIC {} (permutation test); Morris' screening has {} trajectories of its own. A group stands in by the \
-         sum of its members' scores, for Morris, SRRC, PRCC and derivatives by the root of the sum of their squares. \
+         sum of its members' scores, in SRRC by the spread of its part of the linear model, in PRCC by the multiple \
+         partial correlation, for Morris and derivatives by the root of the sum of their squares. Borgonovo's δ has a \
+         lower confidence bound only. \
          Every index of every limited outcome and breach, target and conditional ones among them, with its interval or why it has none, \
          is in `sensitivity.parquet` and `findings.json`.",
         found.title,

@@ -69,9 +69,9 @@ impl GivenData {
     pub(crate) fn why_none(&self, j: usize) -> Option<&'static str> {
         if self.rows() < 2 {
             Some("no row of the sample has its outcome")
-        } else if !varies(&self.outcome) {
-            Some("the outcome does not vary")
-        } else if !varies(&self.inputs[j]) {
+        } else if !varies(self.outcome.iter().copied()) {
+            Some(CONSTANT)
+        } else if !varies(self.inputs[j].iter().copied()) {
             Some("the input does not vary")
         } else {
             None
@@ -79,9 +79,20 @@ impl GivenData {
     }
 }
 
-/// Whether not all values are the same.
-pub(crate) fn varies(values: &[f64]) -> bool {
-    values.iter().any(|value| *value != values[0])
+/// Why an outcome that does not vary has no index.
+pub(crate) const CONSTANT: &str = "the outcome does not vary";
+
+/// A range of values that is smaller than this share of the largest of them is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Whether the finite values differ by more than rounding does.
+pub(crate) fn varies(values: impl IntoIterator<Item = f64>) -> bool {
+    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+    for value in values.into_iter().filter(|value| value.is_finite()) {
+        least = least.min(value);
+        most = most.max(value);
+    }
+    most - least > ROUNDING * least.abs().max(most.abs())
 }
 
 /// Row numbers in ascending order of the values, ties in the order of the rows, which are independent.

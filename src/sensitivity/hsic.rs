@@ -8,7 +8,7 @@
 //! tested by permuting the outcomes.
 
 use super::bootstrap::Resampling;
-use super::given_data::{GivenData, checked, mid_ranks, permutation};
+use super::given_data::{CONSTANT, GivenData, checked, mid_ranks, permutation};
 use crate::error::{Error, Result};
 use crate::numerics::elementary::cos;
 use crate::numerics::interval::{Estimate, Interval};
@@ -179,5 +179,5 @@ fn coefficient(x: &Features, y: &Features, resampling: &Resampling, confidence: 
         };
         products(0, x, y) / (products(1, x, x) * products(2, y, y)).sqrt()
     };
-    resampling.resample(&units).estimate(confidence, "the outcome does not vary", normalised)
+    resampling.resample(&units).estimate(confidence, CONSTANT, normalised)
 }

@@ -4,7 +4,7 @@
 //! Softw. 22 (2007) 1509 for the mean magnitude μ*. The levels are the middles of equal slices of (0, 1), so
 //! that an unbounded law's quantile exists at each.
 
-use super::given_data::permutation;
+use super::given_data::{CONSTANT, permutation, varies};
 use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
 use crate::numerics::interval::{Earned, Estimate, Interval};
@@ -88,6 +88,15 @@ impl Screening {
         if outcomes.len() != self.trajectories * stages {
             return Err(Error::argument("every point of the screening needs an outcome"));
         }
+        if outcomes.iter().any(|value| value.is_finite()) && !varies(outcomes.iter().copied()) {
+            let constant = ElementaryEffects {
+                magnitude: Estimate::none(CONSTANT),
+                mean: 0.0,
+                standard_deviation: 0.0,
+                left_out: 0,
+            };
+            return Ok(vec![constant; self.inputs]);
+        }
         let mut effects: Vec<Vec<f64>> = vec![Vec::new(); self.inputs];
         for t in 0..self.trajectories {
             let values = &outcomes[t * stages..(t + 1) * stages];
@@ -156,5 +165,15 @@ mod tests {
         assert!(interval.contains(0.25), "{interval:?}");
         let sd = ((1.0 - 1.0 / 64.0) / 48.0f64).sqrt();
         assert!((product[0].standard_deviation / sd - 1.0).abs() < 0.2);
+    }
+    #[test]
+    fn property_an_outcome_that_varies_by_rounding_has_no_effects() {
+        let screening = Screening::new(2, 50, 5).unwrap();
+        let points = screening.points();
+        let outcomes: Vec<f64> =
+            (0..points.rows()).map(|k| 3.0 + 1e-13 * points.get(k, 0)).collect();
+        for effect in screening.effects(&outcomes, 0.95).unwrap() {
+            assert!(effect.magnitude.interval.why_none().unwrap().contains("does not vary"));
+        }
     }
 }

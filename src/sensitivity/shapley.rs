@@ -8,7 +8,7 @@
 //! Correlated normal values pass by their innovations in the order of the walk: those are independent, and
 //! the first of them fix exactly the values that have passed.
 
-use super::given_data::{BATCHES, from_batches, part, permutation};
+use super::given_data::{BATCHES, CONSTANT, from_batches, part, permutation, varies};
 use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
 use crate::numerics::interval::Estimate;
@@ -197,9 +197,8 @@ impl Walks {
             .collect();
         let total = |f: usize| parts.iter().map(|sums| sums[f]).sum::<f64>();
         let (walks, sum) = (total(factors), (0..factors).map(total).sum::<f64>());
-        if walks < 2.0 || sum <= 0.0 {
-            let why = "the outcome does not vary over the walks";
-            let effects = vec![Estimate::none(why); factors];
+        if walks < 2.0 || sum <= 0.0 || !varies(outcomes.iter().copied()) {
+            let effects = vec![Estimate::none(CONSTANT); factors];
             return Ok(ShapleyEffects { variance: None, effects, left_out });
         }
         let effects = (0..factors)

@@ -12,6 +12,7 @@
 
 use super::block_sums::{Layout, Moments, Place};
 use super::bootstrap::{ResampledSums, Resampling};
+use super::given_data::{CONSTANT, varies};
 use super::pick_freeze::Plan;
 use super::rare_events::{EventCounts, FEWEST, is_indicator};
 use crate::error::{Error, Result};
@@ -75,7 +76,6 @@ pub struct PairIndices {
     pub explanation: Option<String>,
 }
 
-const NO_VARIATION: &str = "the outcome does not vary";
 const NO_ROWS: &str = "no row of the design has all its outcomes";
 
 /// With the variance of an outcome made by fewer rows than this, a bootstrap is not to be trusted.
@@ -157,13 +157,7 @@ impl Spread {
         let sum = squares().sum::<f64>();
         let effective_rows = sum * sum / squares().map(|square| square * square).sum::<f64>();
         let variance = sum / count;
-        Spread {
-            known: true,
-            varies: values().any(|value| value != first),
-            mean,
-            variance,
-            effective_rows,
-        }
+        Spread { known: true, varies: varies(values()), mean, variance, effective_rows }
     }
 }
 
@@ -233,9 +227,9 @@ impl Indices<'_> {
             return Estimate::none(NO_ROWS);
         }
         if !self.spread.varies {
-            return Estimate::none(NO_VARIATION);
+            return Estimate::none(CONSTANT);
         }
-        let estimate = self.sums.estimate(self.confidence, NO_VARIATION, statistic);
+        let estimate = self.sums.estimate(self.confidence, CONSTANT, statistic);
         let effective = self.spread.effective_rows;
         if self.indicator || estimate.value.is_none() || effective >= FEWEST_EFFECTIVE_ROWS {
             return estimate;

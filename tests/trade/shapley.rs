@@ -46,6 +46,18 @@ fn analytic_ishigami() {
 }
 
 #[test]
+fn property_an_outcome_that_varies_by_rounding_has_no_effects() {
+    let walks = Walks::new(vec![vec![0], vec![1]], None, 100, 7).expect("walks");
+    let points = walks.points(0, &normals(100, 4, 3)).expect("points");
+    let outcomes: Vec<f64> = (0..points.rows()).map(|k| 3.0 + 1e-13 * points.get(k, 0)).collect();
+    let found = walks.effects(&outcomes, 0.9).expect("effects");
+    assert_eq!(found.variance, None);
+    assert!(found.effects.iter().all(|effect| {
+        effect.interval.why_none().is_some_and(|why| why.contains("does not vary"))
+    }));
+}
+
+#[test]
 fn published_g_function_of_eight_inputs() {
     // Closed forms of Sobol's g with a = (0, 1, 4.5, 9, 99, 99, 99, 99): Sᵢ plus equal shares of every interaction.
     let a = [0.0, 1.0, 4.5, 9.0, 99.0, 99.0, 99.0, 99.0];

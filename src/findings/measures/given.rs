@@ -1,14 +1,13 @@
 //! The indices from samples already run.
 
 use super::MeasuredOutput;
-use super::index::{IndexColumn, root_of_squares};
+use super::index::IndexColumn;
 use crate::campaign::common_numbers::Event;
 use crate::campaign::given_sample::{Breaching, GivenSample};
 use crate::campaign::in_parallel;
 use crate::descent::OutcomeQuantity;
 use crate::error::Result;
 use crate::findings::CONFIDENCE;
-use crate::numerics::interval::Estimate;
 use crate::sensitivity::borgonovo::borgonovo_delta;
 use crate::sensitivity::given_data::GivenData;
 use crate::sensitivity::hsic::hsic;
@@ -141,11 +140,10 @@ impl Output {
             }
             Method::Delta => {
                 let data = first_rows(&sample.scores, &values, DISTANCE_ROWS)?;
-                let found = borgonovo_delta(&data, CONFIDENCE, seed)?;
-                let found = found.into_iter().map(|found| found.delta).collect();
-                let method = "classes, bias taken off";
+                let found = borgonovo_delta(&data, CONFIDENCE)?;
+                let method = "cross-fitted copula density";
                 vec![
-                    IndexColumn::new("borgonovo_delta", method, data.rows(), found, Some(BIAS))
+                    IndexColumn::new("borgonovo_delta", method, data.rows(), found, Some(ERROR))
                         .leaving_out(data.left_out()),
                 ]
             }
@@ -165,15 +163,15 @@ impl Output {
             }
             Method::Regression => {
                 let data = first_rows(&sample.values, &values, values.len())?;
-                let found = regression(&data, CONFIDENCE)?;
+                let found = regression(&data, &factors(sample), CONFIDENCE)?;
                 let names = ["src", "pcc"];
-                regressed(sample, names, "linear regression", &data, &found)
+                regressed(names, "linear regression", &data, found)
             }
             Method::RankRegression => {
                 let data =
                     first_rows(&sample.scores[..sample.values.len()], &values, values.len())?;
-                let found = rank_regression(&data, CONFIDENCE)?;
-                regressed(sample, ["srrc", "prcc"], "regression of ranks", &data, &found)
+                let found = rank_regression(&data, &factors(sample), CONFIDENCE)?;
+                regressed(["srrc", "prcc"], "regression of ranks", &data, found)
             }
             Method::Among => self.among(sample, seed)?,
         })
@@ -226,24 +224,17 @@ fn dependence(
         .leaving_out(data.left_out()))
 }
 
-/// Coefficients of the inputs; a group's is the root of the sum of its members' squares.
+fn factors(sample: &GivenSample) -> Vec<&[usize]> {
+    sample.factors.iter().map(|factor| factor.columns.as_slice()).collect()
+}
+
 fn regressed(
-    sample: &GivenSample,
     names: [&'static str; 2],
     method: &'static str,
     data: &GivenData,
-    found: &Regression,
+    found: Regression,
 ) -> Vec<IndexColumn> {
-    let of = |coefficients: &[Estimate]| -> Vec<Estimate> {
-        let why = "the root of the sum of its members' squares, which are not one statistic";
-        let factors = sample.factors.iter().map(|factor| match factor.columns.as_slice() {
-            [one] => coefficients[*one].clone(),
-            members => root_of_squares(members.iter().map(|&j| coefficients[j].value), why),
-        });
-        factors.collect()
-    };
-    let coefficients = [of(&found.standardized), of(&found.partial)];
-    let columns = names.into_iter().zip(coefficients);
+    let columns = names.into_iter().zip([found.standardized, found.partial]);
     let columns = columns.map(|(name, found)| {
         IndexColumn::new(name, method, data.rows(), found, None).leaving_out(data.left_out())
     });
