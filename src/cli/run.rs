@@ -180,7 +180,7 @@ impl Run<'_> {
             known: or_reason(known, NO_TRADE),
             calibrated,
             epistemic: or_reason(epistemic, NO_EPISTEMIC),
-model_form: model_form.ok_or_else(|| "the study states no limit".to_owned()),
+            model_form: model_form.ok_or_else(|| "the study states no limit".to_owned()),
             command: self.asked.command.clone(),
         })?;
         self.write(&findings)?;

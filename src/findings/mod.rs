@@ -249,12 +249,12 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
     drawn.sampling.samples = record.counts().samples();
     let sampler = campaign::sampler(&drawn)?;
     let mut numerical = numerical::numerical(study, record, &evidence.verification);
+    let probabilities = probabilities::probabilities(study, record)?;
     let verdict = demonstration::verdict(study, record, &probabilities)?;
     let verdict = numerical::heed(study, record, &evidence.verification, &mut numerical, verdict)?;
     let drivers = drivers::drivers(study, &evidence.pick_freeze)?;
     let shapley = shapley::shapley(study, &evidence.shapley)?;
     let epistemic = epistemic::epistemic(study, &evidence.epistemic)?;
-    let probabilities = probabilities::probabilities(study, record)?;
     Ok(Findings {
         format: 1,
         title: study.title.clone(),
