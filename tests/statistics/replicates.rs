@@ -21,7 +21,8 @@ fn interval(breaches: &[u64], samples: u64, confidence: f64) -> Interval {
 /// effective sample size capped at the samples where breaches, or samples without one, are fewer than 100.
 #[test]
 fn reference_korn_and_graubard_by_scipy() {
-    let cases: [(&[u64], u64, f64, f64, f64, f64); 4] = [
+    type Case = (&'static [u64], u64, f64, f64, f64, f64);
+    let cases: [Case; 4] = [
         (
             &[20, 30, 20, 30],
             100,
