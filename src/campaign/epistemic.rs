@@ -276,6 +276,17 @@ impl NestedState for NestedDescents<'_> {
         &self.unknown
     }
 
+    fn is_continuous(&self, j: usize) -> bool {
+        let joint = &self.study.joint;
+        let jumps =
+            |i: usize| joint.sample_of(i).is_some() || self.study.inputs[i].marginal.has_jumps();
+        let moved = |i: usize| match joint.copula() {
+            Some(copula) => i == j || copula.normal_correlation(i, j) != 0.0,
+            None => i == j,
+        };
+        (0..self.study.inputs.len()).all(|i| !(moved(i) && jumps(i)))
+    }
+
     fn limits(&self) -> usize {
         self.study.limits.len()
     }

@@ -150,8 +150,11 @@ pub fn verify(study: &Study, record: &Record) -> Result<Verification> {
         let error = worst[limit.outcome as usize].1;
         let share = NEAR.max(MARGIN_ERRORS * error);
         let band = share * limit.value.abs();
-        let mut near: Vec<u64> =
-            (0..margins.len() as u64).filter(|k| margin(k).abs() <= band).collect();
+        let mut near: Vec<u64> = (0..margins.len() as u64)
+            // A descent that was stopped undeployed is no nearer to a limit just below than one that never moved.
+            .filter(|k| !limit.is_of_no_deployment(margin(k)))
+            .filter(|k| margin(k).abs() <= band)
+            .collect();
         let all = near.len();
         near.sort_by(|a, b| margin(a).abs().total_cmp(&margin(b).abs()).then(a.cmp(b)));
         let rest = near.split_off(all.min(most_near));

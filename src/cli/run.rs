@@ -160,6 +160,10 @@ impl Run<'_> {
         if progress.stopping() {
             return Ok(self.interrupted(samples, true));
         }
+        let model_form = campaign::model_form::run_model_form(self.study, &progress)?;
+        if progress.stopping() {
+            return Ok(self.interrupted(samples, true));
+        }
         let findings = findings::gather(&Evidence {
             study: self.study,
             record: &record,
@@ -176,6 +180,7 @@ impl Run<'_> {
             known: or_reason(known, NO_TRADE),
             calibrated,
             epistemic: or_reason(epistemic, NO_EPISTEMIC),
+            model_form: model_form.ok_or_else(|| "the study states no limit".to_owned()),
             command: self.asked.command.clone(),
         })?;
         self.write(&findings)?;

@@ -5,9 +5,8 @@ use crate::campaign::common_numbers::Event;
 use crate::campaign::epistemic::EpistemicOutcomes;
 use crate::campaign::in_parallel;
 use crate::error::Result;
-use crate::numerics::columns::Columns;
 use crate::numerics::interval::Estimate;
-use crate::reliability::nested::{Halves, any_breach, band, central, shares};
+use crate::reliability::nested::{NestedEvent, band, central, shares};
 use crate::study::{LimitKind, Study};
 use serde::Serialize;
 
@@ -33,6 +32,8 @@ pub struct EpistemicFinding {
     pub sets: usize,
     /// See `sets`.
     pub inner: u64,
+    /// Whether P of a set is integrated along lines; if not, breaches are counted.
+    pub integrated: bool,
     /// Descents spent, those for the shares included.
     pub descents: u64,
     /// Descents of the sets that could not be computed.
@@ -113,7 +114,7 @@ pub(super) fn epistemic(
         in_parallel(&events, |event| self::event(study, outcomes, *event))
             .into_iter()
             .collect::<Result<_>>()?;
-    let limits: Vec<usize> = (0..study.limits.len()).collect();
+    let limits = study.stated_limits();
     let share_points = outcomes.shares.as_ref().map_or(0, |sample| sample.points());
     Ok(EpistemicFinding {
         none: None,
@@ -121,6 +122,7 @@ pub(super) fn epistemic(
         varying: outcomes.varying.clone(),
         sets: outcomes.sample.sets(),
         inner: outcomes.inner,
+        integrated: outcomes.sample.integrates(),
         descents: (outcomes.sample.points() + share_points) as u64,
         faults: outcomes.sample.faults(),
         events,
@@ -138,6 +140,7 @@ fn nothing(why: &str) -> EpistemicFinding {
         varying: Vec::new(),
         sets: 0,
         inner: 0,
+        integrated: false,
         descents: 0,
         faults: 0,
         events: Vec::new(),
@@ -145,19 +148,15 @@ fn nothing(why: &str) -> EpistemicFinding {
     }
 }
 
-/// Whether an event happens at a point.
-fn happens(event: Event) -> impl Fn(&Columns, usize) -> Option<bool> {
-    move |margins, k| match event {
-        Event::Any => any_breach(margins, k),
-        Event::Limit(i) => {
-            let margin = margins.get(k, i);
-            (!margin.is_nan()).then_some(margin < 0.0)
-        }
+fn nested(event: Event) -> NestedEvent {
+    match event {
+        Event::Any => NestedEvent::Any,
+        Event::Limit(limit) => NestedEvent::Below { limit, margin: 0.0 },
     }
 }
 
 fn event(study: &Study, outcomes: &EpistemicOutcomes, event: Event) -> Result<EpistemicEvent> {
-    let halves = outcomes.sample.halves(happens(event));
+    let halves = outcomes.sample.halves(nested(event));
     let allowed = study.requirement.filter(|_| event == Event::Any).map(|r| 1.0 - r.reliability);
     let at: Vec<f64> = allowed.into_iter().collect();
     let found = band(&halves, &SHARES, &at, CONFIDENCE)?;
@@ -170,7 +169,7 @@ fn event(study: &Study, outcomes: &EpistemicOutcomes, event: Event) -> Result<Ep
     let (no_shares, shares) = match &outcomes.shares {
         Err(why) => (Some(why.clone()), Vec::new()),
         Ok(sample) => {
-            let found = shares(sample, happens(event), CONFIDENCE)?;
+            let found = shares(sample, nested(event), CONFIDENCE)?;
             let mut listed: Vec<UnknownShare> = outcomes
                 .factors
                 .iter()
@@ -214,13 +213,26 @@ fn probability_box(
         LimitKind::Min => limit.value + margin,
     };
     let margins = outcomes.sample.margins().column(i);
-    let mut values: Vec<f64> =
-        margins.iter().map(|m| outcome_of(*m)).filter(|x| x.is_finite()).collect();
+    let weights = outcomes.sample.weights();
+    let mut values: Vec<(f64, f64)> = margins
+        .iter()
+        .zip(weights.iter().cycle())
+        .map(|(m, weight)| (outcome_of(*m), *weight))
+        .filter(|(x, _)| x.is_finite())
+        .collect();
     if values.len() < 2 {
         return None;
     }
-    values.sort_by(f64::total_cmp);
-    let at = |share: f64| values[((share * values.len() as f64) as usize).min(values.len() - 1)];
+    values.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let all: f64 = values.iter().map(|(_, weight)| weight).sum();
+    let at = |share: f64| {
+        let mut below = 0.0;
+        let reaches = |(_, weight): &&(f64, f64)| {
+            below += weight;
+            below >= share * all
+        };
+        values.iter().find(reaches).or(values.last()).map_or(f64::NAN, |(x, _)| *x)
+    };
     let (from, to) = (at(TAIL).min(limit.value), at(1.0 - TAIL).max(limit.value));
     let room = 0.02 * (to - from);
     let (from, to) = (from - room, to + room);
@@ -230,10 +242,17 @@ fn probability_box(
     let mut mean = Vec::with_capacity(THRESHOLDS);
     let mut bands: Vec<(f64, Vec<f64>)> = shares.map(|share| (share, Vec::new())).to_vec();
     for &threshold in &thresholds {
-        let halves: Halves = outcomes.sample.halves(|margins, k| {
-            let value = outcome_of(margins.get(k, i));
-            (!value.is_nan()).then_some(value < threshold)
-        });
+        let halves = match limit.kind {
+            LimitKind::Max => {
+                // The outcome is below where the margin is not.
+                let margin = limit.value - threshold;
+                outcomes.sample.halves(NestedEvent::Below { limit: i, margin }).complement()
+            }
+            LimitKind::Min => {
+                let margin = threshold - limit.value;
+                outcomes.sample.halves(NestedEvent::Below { limit: i, margin })
+            }
+        };
         let (average, quantiles) = central(&halves, &shares)?;
         mean.push(average);
         for ((_, curve), quantile) in bands.iter_mut().zip(quantiles) {

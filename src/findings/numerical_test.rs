@@ -44,7 +44,10 @@ fn heeded(
     record: &Record,
     verification: &Verification,
 ) -> (VerdictFinding, NumericalFinding) {
-    let verdict = super::super::demonstration::verdict(study, record).expect("a verdict");
+    let probabilities =
+        super::super::probabilities::probabilities(study, record).expect("probabilities");
+    let verdict =
+        super::super::demonstration::verdict(study, record, &probabilities).expect("a verdict");
     let mut finding = numerical(study, record, verification);
     let verdict = heed(study, record, verification, &mut finding, verdict).expect("a verdict");
     (verdict, finding)

@@ -2,20 +2,26 @@
 //!
 //! Coordinates of the unit cube are of two kinds. Some stand for constants that are not known, e; the others vary, v, from
 //! flight to flight. P(e) = P(breach | e) is then itself uncertain, and its law is what this finds: an outer
-//! sample of e, and for each an inner one of v in two halves, each half a Latin hypercube of its own. Both halves see the same e
-//! and are otherwise independent, so that the products of their shares are unbiased for the square of P(e), and how
-//! much their own scatter distorts anything else shows in how the halves differ from their mean.
+//! sample of e, and for each an inner one of v in two halves. Both halves see the same e and nothing else in common, so that
+//! the products of their shares are unbiased for the square of P(e), and how much their own scatter distorts
+//! anything else shows in how the halves differ from their mean.
+//!
+//! A half integrates over v instead of counting wherever it can: its points lie on lines, along which the margins are
+//! interpolated (see [`inner`]).
 
 mod estimates;
+mod inner;
 mod shares;
 
 pub use estimates::{Band, band, central, untold};
+pub use inner::NestedEvent;
 pub use shares::{ShareSample, Shares, share_sample, shares};
 
 use super::draws::open_uniform;
 use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
 use crate::streams::{Purpose, stream};
+use inner::Inner;
 use rand::Rng;
 
 /// A system some of whose coordinates stand for what is not known.
@@ -25,6 +31,11 @@ pub trait NestedState {
 
     /// Places of the coordinates that stand for what is not known, ascending.
     fn unknown(&self) -> &[usize];
+
+    /// Whether the margins are continuous in coordinate `j`, so that they may be interpolated along it.
+    fn is_continuous(&self, _j: usize) -> bool {
+        true
+    }
 
     /// Number of limits: columns of the margins.
     fn limits(&self) -> usize;
@@ -48,7 +59,7 @@ const BATCH: usize = 16_384;
 #[derive(Debug, Clone)]
 pub struct NestedSample {
     sets: usize,
-    half: usize,
+    inner: Inner,
     margins: Columns,
 }
 
@@ -59,11 +70,17 @@ pub struct Halves {
     pub first: Vec<f64>,
     /// By the second half.
     pub second: Vec<f64>,
-    /// Points in a half.
-    pub points: usize,
+    /// Smallest probability that the two halves of a set resolve together.
+    pub resolution: f64,
 }
 
 impl Halves {
+    /// The conditional probabilities that the event does not happen.
+    pub fn complement(self) -> Self {
+        let not = |shares: Vec<f64>| shares.into_iter().map(|share| 1.0 - share).collect();
+        Halves { first: not(self.first), second: not(self.second), ..self }
+    }
+
     /// The halves of the sets that have both.
     fn complete(&self) -> impl Iterator<Item = (f64, f64)> {
         self.between(0..self.first.len())
@@ -98,7 +115,7 @@ pub fn nested_sample(
         )));
     }
     let section = sets / SECTIONS;
-    let varying = varying(state);
+    let inner = Inner::new(state, half)?;
     let mut margins = Columns::new(sets * 2 * half, state.limits());
     let mut blocks = Blocks::new(state, &mut margins);
     let mut outer = Columns::default();
@@ -110,12 +127,12 @@ pub fn nested_sample(
         let unknown = outer.row(set % section);
         for side in 0..2 {
             let index = (2 * set + side) as u64;
-            let inner = hypercube(varying.len(), half, seed, Purpose::Varying, index);
-            blocks.push(&unknown, &varying, &inner)?;
+            let points = inner.points(side, seed, Purpose::Varying, index);
+            blocks.push(&unknown, inner.varying(), &points)?;
         }
     }
     blocks.finish()?;
-    Ok(NestedSample { sets, half, margins })
+    Ok(NestedSample { sets, inner, margins })
 }
 
 impl NestedSample {
@@ -141,50 +158,29 @@ impl NestedSample {
         (0..self.points()).filter(|&k| unknown(k)).count() as u64
     }
 
-    /// The conditional probabilities of an event, which says of a point whether it happens there or, with
-    /// `None`, that this is not known; such points are left out.
-    pub fn halves(&self, event: impl Fn(&Columns, usize) -> Option<bool>) -> Halves {
+    /// Whether a half integrates along lines; if not it counts.
+    pub fn integrates(&self) -> bool {
+        self.inner.integrates()
+    }
+
+    /// The conditional probabilities of an event.
+    pub fn halves(&self, event: NestedEvent) -> Halves {
+        let half = self.inner.size();
         let share = |set: usize, side: usize| {
-            let start = (2 * set + side) * self.half;
-            share(start..start + self.half, |k| event(&self.margins, k))
+            let start = (2 * set + side) * half;
+            self.inner.share(&self.margins, start, side, event)
         };
         Halves {
             first: (0..self.sets).map(|set| share(set, 0)).collect(),
             second: (0..self.sets).map(|set| share(set, 1)).collect(),
-            points: self.half,
+            resolution: self.inner.resolution(),
         }
     }
 
-    /// The conditional probabilities that limit `limit`'s margin is below `margin`.
-    pub fn below(&self, limit: usize, margin: f64) -> Halves {
-        self.halves(|margins, k| {
-            let value = margins.get(k, limit);
-            (!value.is_nan()).then_some(value < margin)
-        })
+    /// The share of what varies for which each point of a set stands, half after half.
+    pub fn weights(&self) -> Vec<f64> {
+        (0..2).flat_map(|side| self.inner.weights(side)).map(|weight| 0.5 * weight).collect()
     }
-}
-
-/// Whether any limit is breached at a point.
-pub fn any_breach(margins: &Columns, k: usize) -> Option<bool> {
-    let each = (0..margins.columns()).map(|i| margins.get(k, i));
-    let mut unknown = false;
-    for margin in each {
-        if margin < 0.0 {
-            return Some(true);
-        }
-        unknown |= margin.is_nan();
-    }
-    (!unknown).then_some(false)
-}
-
-/// The share of points where an event happens among those where this is known; NaN if there are none.
-fn share(points: std::ops::Range<usize>, event: impl Fn(usize) -> Option<bool>) -> f64 {
-    let (mut happened, mut known) = (0.0, 0.0);
-    for yes in points.filter_map(event) {
-        known += 1.0;
-        happened += f64::from(u8::from(yes));
-    }
-    happened / known
 }
 
 /// Places of the coordinates that vary.

@@ -66,6 +66,10 @@ fn quantile(event: &EpistemicEvent, share: f64) -> Option<&Estimate> {
 fn with_interval(estimate: Option<&Estimate>) -> String {
     let Some(estimate) = estimate else { return "–".to_owned() };
     match estimate.interval.interval() {
+        Some(i) if estimate.value.is_none() && i.lower > 0.0 => {
+            format!("within {}", probability_interval(&estimate.interval))
+        }
+        Some(i) if estimate.value.is_none() => format!("at most {}", probability(i.upper)),
         Some(_) => format!("{} ({})", percent(estimate), probability_interval(&estimate.interval)),
         None => percent(estimate),
     }
@@ -77,27 +81,26 @@ fn headlines(any: &EpistemicEvent) -> Vec<String> {
         && quantile(any, 0.95).is_some_and(|estimate| estimate.value.is_none())
     {
         return vec![format!(
-            "P(any breach) is {mean} on average; between what bounds it lies given the true constants of this brake \
-             cannot be told: {why}."
+            "P(any breach), averaged over the epistemic inputs: {mean}. No credible interval for this brake: {why}."
         )];
     }
     let at = |share: f64| quantile(any, share).and_then(|e| e.value).unwrap_or(f64::NAN);
     let mut lines = vec![format!(
-        "P(any breach) is {mean} on average; given the true constants of this brake it {} (90 % of our belief).",
+        "P(any breach), averaged over the epistemic inputs: {mean}. Of this brake it {} (90 % credible interval).",
         lies_between(at(0.05), at(0.95)),
     )];
     if let Some((allowed, belief)) = &any.requirement_met {
         let is = match (belief.value, belief.interval.why_none()) {
-            (None, Some(why)) => format!("cannot be told: {why}"),
-            _ => format!("is {}", with_interval(Some(belief))),
+            (None, Some(why)) => format!("not computed, {why}"),
+            _ => with_interval(Some(belief)),
         };
         lines.push(format!(
-            "The belief that the requirement is met, P(any breach) at most {}, {is}.",
+            "Probability (epistemic) that this brake meets the requirement, P(any breach) at most {}: {is}.",
             probability(*allowed)
         ));
     }
     if let [only] = &any.shares[..] {
-        lines.push(format!("The whole band is of `{}`: nothing else is unknown.", only.factor));
+        lines.push(format!("All epistemic uncertainty comes from `{}`.", only.factor));
         return lines;
     }
     let leading: Vec<String> = any
@@ -111,7 +114,7 @@ fn headlines(any: &EpistemicEvent) -> Vec<String> {
         .collect();
     if !leading.is_empty() {
         lines.push(format!(
-            "Of the variance of that band, these carry most, interactions included: {}.",
+            "Largest total-order contributions to the variance of P(any breach) between brakes: {}.",
             leading.join(", ")
         ));
     }
@@ -126,15 +129,26 @@ fn about(finding: &EpistemicFinding, any: Option<&EpistemicEvent>) -> String {
         names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
     };
     let noise = any.map_or(0.0, |event| event.noise);
+    let how = match finding.integrated {
+        true => format!(
+            "{} descents over what varies; P of a set is integrated along lines through them, to a standard deviation of {}, \
+             which is removed",
+            finding.inner,
+            probability(noise)
+        ),
+        false => format!(
+            "{} descents over what varies; the standard deviation of P of a set from so few, {}, is removed",
+            finding.inner,
+            probability(noise)
+        ),
+    };
     let mut text = format!(
         "From flight to flight vary: {}. Fixed for this brake, but not known: {}. {} sets of values of what is not known, each \
-         with {} descents over what varies; what these few descents do to P of one set (a standard deviation of {}) is \
-         taken out of the band. Intervals are of {} confidence, from the scatter of twenty sections of the sets; {} descents in all.",
+         with {how}. Intervals are of {} confidence, from the scatter of twenty sections of the sets; the average of an event that \
+         too few sets carry has a bound only (its estimate is that of the probabilities above). {} descents in all.",
         names(&finding.varying),
         names(&finding.unknown),
         count(finding.sets as u64),
-        finding.inner,
-        probability(noise),
         probability(CONFIDENCE),
         count(finding.descents)
     );

@@ -1,5 +1,6 @@
 //! The trade of tolerances: derivatives, curves, plans, and what becomes known when.
 
+mod beliefs;
 mod curves;
 mod derivatives;
 mod known;

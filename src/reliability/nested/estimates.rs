@@ -2,12 +2,26 @@
 
 use super::{Halves, SECTIONS};
 use crate::error::{Error, Result};
+use crate::numerics::elementary::ln;
 use crate::numerics::interval::{Earned, Estimate, Interval};
 use crate::numerics::special::{beta, student};
 
 /// Share of the sets below which those that saw an event (or saw it fail to happen) say nothing of the law over all sets:
 /// its quantiles would be drawn as straight lines from the others to them.
 const LEAST_TOLD: f64 = 0.1;
+
+/// Share of the sets that must carry a mean, by their effective number, for it to be stated with Student's interval: of a rarer
+/// event the mean lies with a few sets, most of which were not drawn.
+const LEAST_CARRYING: f64 = 0.1;
+/// Sets that must carry it, however many there are.
+const FEWEST_CARRYING: f64 = 80.0;
+
+/// Sets on either side of a belief below which its interval is the exact one of their number.
+const FEWEST_EITHER_SIDE: f64 = 20.0;
+
+/// Sets of a section beyond a quantile below which the sections alone do not tell its error: in the tail of a small section
+/// a quantile is biased.
+const FEWEST_BEYOND: f64 = 2.0;
 
 /// Sets of a section below which no interval is given.
 const FEWEST: usize = 5;
@@ -151,16 +165,14 @@ pub fn band(halves: &Halves, shares: &[f64], at: &[f64], confidence: f64) -> Res
         sectioned(all[place], &values, confidence)
     };
     let beliefs = at.iter().enumerate().map(|(k, &value)| {
-        let expected_points = value * (2 * halves.points) as f64;
-        if expected_points < 1.0 {
-            let why = format!(
-                "{} descents with each set do not resolve a probability of {value}",
-                2 * halves.points
-            );
+        if value < halves.resolution {
+            let why = format!("the descents with each set do not resolve a probability of {value}");
             return (value, Estimate::none(why));
         }
         let mut belief = estimate(2 + shares.len() + k);
-        if belief.interval.interval().is_none() && sections.len() == SECTIONS {
+        let below = belief.value.unwrap_or(0.0);
+        let few = below.min(1.0 - below) * (sets as f64) < FEWEST_EITHER_SIDE;
+        if (few || belief.interval.interval().is_none()) && sections.len() == SECTIONS {
             belief.interval = binomial(belief.value.unwrap_or(0.0), sets as f64, confidence).into();
         }
         (value, belief)
@@ -169,12 +181,12 @@ pub fn band(halves: &Halves, shares: &[f64], at: &[f64], confidence: f64) -> Res
     let happened = pairs.iter().filter(|(a, b)| a + b > 0.0).count();
     let failed_to = pairs.iter().filter(|(a, b)| a + b < 2.0).count();
     let untold = untold(happened, failed_to, sets);
-    let mut mean = estimate(0);
-    if happened == 0 || failed_to == 0 {
-        // P(event) is at most the share of sets that would see it at all, and the sets are independent.
-        let share = if happened == 0 { 0.0 } else { 1.0 };
-        mean.interval = binomial(share, sets as f64, confidence).into();
-    }
+    let means: Vec<f64> = pairs.iter().map(|(a, b)| 0.5 * (a + b)).collect();
+    let law = MidDistribution::new(means.iter().copied());
+    let mean = match carrying(&means) < FEWEST_CARRYING.max(LEAST_CARRYING * sets as f64) {
+        true => bounded(all[0], sets as f64, confidence),
+        false => estimate(0),
+    };
     Ok(Band {
         mean,
         standard_deviation: estimate(1),
@@ -185,8 +197,17 @@ pub fn band(halves: &Halves, shares: &[f64], at: &[f64], confidence: f64) -> Res
                 if let Some(why) = &untold {
                     return (share, Estimate::none(why.clone()));
                 }
-                let quantile = estimate(2 + k);
-                (share, resolved(quantile, sections.len(), 2 * halves.points, confidence))
+                let mut quantile = estimate(2 + k);
+                let beyond = share.min(1.0 - share) * (sets / SECTIONS) as f64;
+                if let (true, Earned::Interval(own)) =
+                    (beyond < FEWEST_BEYOND, &mut quantile.interval)
+                {
+                    // Woodruff's (J. Am. Stat. Assoc. 47 (1952) 635): the values at the ends of the share's interval.
+                    let ends = binomial(share, sets as f64, confidence);
+                    own.lower = own.lower.min(law.quantile(ends.lower));
+                    own.upper = own.upper.max(law.quantile(ends.upper));
+                }
+                (share, resolved(quantile, sections.len(), halves.resolution, confidence))
             })
             .collect(),
         beliefs: beliefs.collect(),
@@ -239,12 +260,51 @@ fn sectioned(value: f64, sections: &[f64], confidence: f64) -> Estimate {
     Estimate { value: Some(value), standard_error: Some(error), interval: interval.into() }
 }
 
-/// A quantile of P with its interval widened by half a point of a set either way, below which nothing is resolved.
-fn resolved(mut quantile: Estimate, sections: usize, points: usize, confidence: f64) -> Estimate {
+/// How many sets carry the mean of the event, or of its opposite, whichever is rarer: (Σ P)² / Σ P².
+fn carrying(shares: &[f64]) -> f64 {
+    let of = |sum: f64, squares: f64| if squares > 0.0 { sum * sum / squares } else { 0.0 };
+    let sums = |value: &dyn Fn(f64) -> f64| {
+        let each = || shares.iter().map(|&p| value(p));
+        of(each().sum(), each().map(|x| x * x).sum())
+    };
+    sums(&|p| p).min(sums(&|p| 1.0 - p))
+}
+
+/// The mean of a rare event (or of one that is rarely missed), of which the sets have seen too little for a number: bounds
+/// that hold at any number of independent sets and for any law of P(e) on [0, 1], since sets · KL(mean, bound) is at most
+/// the logarithm of one over the risk (Hoeffding, J. Am. Stat. Assoc. 58 (1963) 13, theorem 1). Stratified sets lie no
+/// farther from the mean than independent ones.
+fn bounded(mean: f64, sets: f64, confidence: f64) -> Estimate {
+    let mean = mean.clamp(0.0, 1.0);
+    let most = -ln(0.5 * (1.0 - confidence)) / sets;
+    let distance = |bound: f64| {
+        let part =
+            |share: f64, other: f64| if share > 0.0 { share * ln(share / other) } else { 0.0 };
+        part(mean, bound) + part(1.0 - mean, 1.0 - bound)
+    };
+    let bound = |end: f64| {
+        let (mut inside, mut outside) = (mean, end);
+        for _ in 0..60 {
+            let middle = 0.5 * (inside + outside);
+            if distance(middle) <= most { inside = middle } else { outside = middle }
+        }
+        outside
+    };
+    let interval = Interval {
+        lower: if mean > 0.0 { bound(0.0) } else { 0.0 },
+        upper: if mean < 1.0 { bound(1.0) } else { 1.0 },
+        confidence,
+        method: "Hoeffding's bound over sets",
+    };
+    Estimate { value: None, standard_error: None, interval: interval.into() }
+}
+
+/// A quantile of P with its interval widened by half of what a set resolves either way.
+fn resolved(mut quantile: Estimate, sections: usize, resolution: f64, confidence: f64) -> Estimate {
     let (Some(value), SECTIONS) = (quantile.value, sections) else { return quantile };
     let (lower, upper) =
         quantile.interval.interval().map_or((value, value), |i| (i.lower, i.upper));
-    let half = 0.5 / points as f64;
+    let half = 0.5 * resolution;
     quantile.interval = Earned::Interval(Interval {
         lower: (lower - half).max(0.0),
         upper: (upper + half).min(1.0),

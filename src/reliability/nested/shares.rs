@@ -1,6 +1,7 @@
 //! Which unknown carries how much of the band: Sobol' indices of P(e).
 
-use super::{Blocks, NestedState, hypercube, share, varying};
+use super::inner::{Inner, NestedEvent};
+use super::{Blocks, NestedState};
 use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
 use crate::numerics::interval::{Earned, Estimate};
@@ -15,7 +16,7 @@ const GROUPS: usize = 20;
 #[derive(Debug, Clone)]
 pub struct ShareSample {
     rows: usize,
-    inner: usize,
+    inner: Inner,
     factors: usize,
     /// Which factors are all of the unknowns.
     whole: Vec<bool>,
@@ -43,9 +44,14 @@ pub struct Shares {
 /// Inner samples of a row: A with the first, A with the second, B with either, then every factor's with the second.
 const FIXED: usize = 4;
 
+/// The half whose points a block has.
+fn side_of(block: usize) -> usize {
+    usize::from(block == 1 || block >= FIXED - 1)
+}
+
 /// Margins at `rows` rows of a pick-freeze design of the unknowns, `inner` points each: two independent points A and B
-/// of the unknowns and, for each factor (places of coordinates), A with the factor from B. A and B see two independent
-/// Latin hypercubes of what varies; the others see the second.
+/// of the unknowns and, for each factor (places of coordinates), A with the factor from B. A and B see two
+/// halves of what varies; the others see the second.
 ///
 /// Row k is a pure function of (seed, k).
 ///
@@ -65,9 +71,9 @@ pub fn share_sample(
     if factors.iter().flatten().any(|j| !unknown.contains(j)) {
         return Err(Error::argument("a factor of the unknowns is made of unknown coordinates"));
     }
-    let varying = varying(state);
+    let inner = Inner::new(state, inner)?;
     let blocks_a_row = FIXED + factors.len();
-    let mut margins = Columns::new(rows * blocks_a_row * inner, state.limits());
+    let mut margins = Columns::new(rows * blocks_a_row * inner.size(), state.limits());
     let mut blocks = Blocks::new(state, &mut margins);
     for row in 0..rows {
         let mut random = stream(seed, Purpose::UnknownShares, row as u64);
@@ -76,10 +82,10 @@ pub fn share_sample(
         let (a, b) = (draw(), draw());
         let [one, two] = [0, 1].map(|side| {
             let index = 2 * row as u64 + side;
-            hypercube(varying.len(), inner, seed, Purpose::VaryingShares, index)
+            inner.points(side as usize, seed, Purpose::VaryingShares, index)
         });
-        for (unknown, inner) in [(&a, &one), (&a, &two), (&b, &one), (&b, &two)] {
-            blocks.push(unknown, &varying, inner)?;
+        for (unknown, points) in [(&a, &one), (&a, &two), (&b, &one), (&b, &two)] {
+            blocks.push(unknown, inner.varying(), points)?;
         }
         for factor in factors {
             let mixed: Vec<f64> = unknown
@@ -87,7 +93,7 @@ pub fn share_sample(
                 .enumerate()
                 .map(|(m, j)| if factor.contains(j) { b[m] } else { a[m] })
                 .collect();
-            blocks.push(&mixed, &varying, &two)?;
+            blocks.push(&mixed, inner.varying(), &two)?;
         }
     }
     blocks.finish()?;
@@ -145,18 +151,14 @@ impl Sums {
 ///
 /// # Errors
 /// If the confidence is not between 0 and 1.
-pub fn shares(
-    sample: &ShareSample,
-    event: impl Fn(&Columns, usize) -> Option<bool>,
-    confidence: f64,
-) -> Result<Shares> {
+pub fn shares(sample: &ShareSample, event: NestedEvent, confidence: f64) -> Result<Shares> {
     if !(confidence > 0.0 && confidence < 1.0) {
         return Err(Error::argument("a confidence lies between 0 and 1"));
     }
     let blocks = FIXED + sample.factors;
     let of = |row: usize, block: usize| {
-        let start = (row * blocks + block) * sample.inner;
-        share(start..start + sample.inner, |k| event(&sample.margins, k))
+        let start = (row * blocks + block) * sample.inner.size();
+        sample.inner.share(&sample.margins, start, side_of(block), event)
     };
     let rows: Vec<Vec<f64>> = (0..sample.rows)
         .map(|row| (0..blocks).map(|block| of(row, block)).collect::<Vec<f64>>())

@@ -31,21 +31,18 @@ fn belief(event: &EpistemicEvent) -> Option<Figure> {
         .filter(|(_, share)| (0.05..=0.95).contains(share))
         .map(|&(p, share)| (p, 0.0, share))
         .collect();
-    let mean = event.mean.value?;
+    let mean = event.mean.value;
     let mut keys = vec![
-        (Swatch::Line(BLUE, false), "belief that P is at most this".to_owned()),
-        (Swatch::Area(BLUE, 0.25), "90 % of belief".to_owned()),
-        (Swatch::Dot(INK), format!("mean {}", probability(mean))),
+        (Swatch::Line(BLUE, false), "probability that P is at most this".to_owned()),
+        (Swatch::Area(BLUE, 0.25), "90 % credible interval".to_owned()),
     ];
-    if allowed.is_none() {
-        keys.truncate(3);
-    }
+    keys.extend(mean.map(|mean| (Swatch::Dot(INK), format!("mean {}", probability(mean)))));
     let x = Axis::shares(
         "probability of any breach, given the constants of the brake",
         (low - room).max(0.0),
         (high + room).min(1.0),
     );
-    let y = Axis::shares("belief", 0.0, 1.04);
+    let y = Axis::shares("epistemic probability", 0.0, 1.04);
     let name = "belief-any";
     let mut chart = Chart::new(name, HEIGHT, &x, &y, keys, allowed.is_some());
     chart.band(&inside, BLUE, 0.25);
@@ -53,20 +50,22 @@ fn belief(event: &EpistemicEvent) -> Option<Figure> {
     let whole: Vec<(f64, f64)> =
         std::iter::once((first, 0.0)).chain(curve).chain([(last, 1.0)]).collect();
     chart.line(&whole, BLUE, 2.2, false);
-    chart.dots(&[(mean, 0.02)], INK, 4.2, 1.0);
+    if let Some(mean) = mean {
+        chart.dots(&[(mean, 0.02)], INK, 4.2, 1.0);
+    }
     if let Some(allowed) = allowed {
         chart.vertical_limit(allowed, format!("allowed {}", probability(allowed)));
     }
-    let title = "What we believe of P(any breach)".to_owned();
+    let title = "P(any breach) of this brake".to_owned();
     let caption = "The probability of any breach depends on constants of this brake that are not known. The curve is \
-                   the belief that it is at most the value below."
+                   the probability, over those constants, that it is at most the value below."
         .to_owned();
     let at =
         |share: f64| event.quantiles.iter().find(|(s, _)| *s == share).and_then(|(_, e)| e.value);
     let alternative = format!(
-        "Rising curve; 90 % of belief {}, the mean is {}.",
+        "Rising curve; the 90 % credible interval {}{}.",
         lies_between(at(0.05)?, at(0.95)?),
-        probability(mean)
+        mean.map_or(String::new(), |mean| format!(", the mean is {}", probability(mean)))
     );
     let svg = chart.svg(&title, &alternative);
     Some(Figure { name: name.to_owned(), title, caption, alternative, svg })
@@ -82,7 +81,7 @@ fn p_box(data: &ProbabilityBox) -> Option<Figure> {
     let keys = vec![
         (Swatch::Line(INK, false), "on average".to_owned()),
         (Swatch::Line(BLUE, false), "median".to_owned()),
-        (Swatch::Area(BLUE, 0.25), "90 % of belief".to_owned()),
+        (Swatch::Area(BLUE, 0.25), "90 % credible interval".to_owned()),
     ];
     let x = Axis::linear(format!("{} ({})", outcome.title(), unit.symbol), first, last);
     let y = Axis::shares("probability of less", 0.0, 1.02);
@@ -97,8 +96,8 @@ fn p_box(data: &ProbabilityBox) -> Option<Figure> {
     }
     chart.vertical_limit(unit.shown(data.limit), format!("limit {}", data.limit_text));
     let title = format!("P-box of {}", outcome.title());
-    let caption = "Each set of constants has its own distribution function; at every value, 90 % of our belief \
-                   about it lies in the band. The width is what is not known; the slope is what varies."
+    let caption = "Each set of constants has its own distribution function; at every value, its 90 % credible interval \
+                   is the band. The width is what is not known; the slope is what varies."
         .to_owned();
     let place = data.thresholds.partition_point(|t| *t < data.limit);
     let at = |curve: &[f64]| curve.get(place).or(curve.last()).copied();
