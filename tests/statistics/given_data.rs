@@ -80,18 +80,23 @@ fn analytic_rank_index_of_correlated_inputs() {
 fn analytic_rank_index_of_cubes_is_held_although_neighbours_differ() {
     // z₁³ + z₂: 15/16 and 1/16. Rows in a ring, tails beside each other, give 0.905 here, and intervals that
     // hold 53 times in 100.
-    let mut covered = [0; 2];
+    let (mut covered, mut stated) = ([0; 2], 0);
     let seeds = 100;
     for seed in 0..seeds {
         let z = normals(16_384, 2, 900 + seed);
         let outcome: Vec<f64> = z[0].iter().zip(&z[1]).map(|(a, b)| a * a * a + b).collect();
         let found = first_order(&given(&z, &outcome), 0.95).unwrap();
+        // A sample whose largest cubes make most of its variance has no interval.
+        if found[0].interval.interval().is_none() {
+            continue;
+        }
+        stated += 1;
         for (count, (index, truth)) in covered.iter_mut().zip(found.iter().zip([0.9375, 0.0625])) {
             *count += holds(index, truth);
         }
     }
-    // A hundred intervals for 95 %: fewer than 87 hold once in 2 000.
-    assert!(covered.iter().all(|c| *c >= 87), "{covered:?} of {seeds}");
+    // A hundred intervals for 95 %, or a few less: fewer than 86 hold once in 2 000.
+    assert!(stated >= 95 && covered.iter().all(|c| *c >= 86), "{covered:?} of {stated}");
     // Few effective rows: none is stated.
     let z = normals(2048, 2, 1);
     let outcome: Vec<f64> = z[0].iter().map(|a| (1.5 * a).exp()).collect();
