@@ -11,9 +11,13 @@
 use super::given_data::{BATCHES, CONSTANT, from_batches, part, permutation, varies};
 use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
-use crate::numerics::interval::Estimate;
+use crate::numerics::interval::{Earned, Estimate};
 use nalgebra::DMatrix;
 use serde::Serialize;
+
+/// With the variance made by fewer walks than this, batches do not show its error: of lognormal outcomes an
+/// interval for 95 % was measured to hold 63 to 93 % below, 93 to 96 % above.
+const FEWEST_EFFECTIVE_WALKS: f64 = 30.0;
 
 /// Which points the walks visit.
 #[derive(Debug, Clone)]
@@ -201,6 +205,12 @@ impl Walks {
             let effects = vec![Estimate::none(CONSTANT); factors];
             return Ok(ShapleyEffects { variance: None, effects, left_out });
         }
+        let effective = self.effective_walks(outcomes);
+        let too_few = (effective < FEWEST_EFFECTIVE_WALKS).then(|| {
+            format!(
+                "the variance comes from few walks, as if from {effective:.0}: too few for batches"
+            )
+        });
         let effects = (0..factors)
             .map(|f| {
                 let of_batches: Vec<f64> = parts
@@ -212,10 +222,32 @@ impl Walks {
                         share + (sums[f] - share * own) / (sum / BATCHES as f64)
                     })
                     .collect();
-                from_batches(self.orders, confidence, total(f) / sum, &of_batches)
+                let estimate = from_batches(self.orders, confidence, total(f) / sum, &of_batches);
+                match (&too_few, estimate.value) {
+                    (Some(why), Some(_)) => Estimate {
+                        standard_error: None,
+                        interval: Earned::none(why.clone()),
+                        ..estimate
+                    },
+                    _ => estimate,
+                }
             })
             .collect();
         Ok(ShapleyEffects { variance: Some(sum / walks), effects, left_out })
+    }
+
+    /// Walks that would make the same variance if each made as much of it: (Σd²)²/Σd⁴ of the distances d
+    /// between the outcomes at their ends.
+    fn effective_walks(&self, outcomes: &[f64]) -> f64 {
+        let (mut squares, mut fourths) = (0.0, 0.0);
+        for walk in outcomes.chunks_exact(self.points_a_walk()) {
+            let distance = walk[walk.len() - 1] - walk[0];
+            if walk.iter().all(|value| value.is_finite()) {
+                squares += distance * distance;
+                fourths += distance * distance * distance * distance;
+            }
+        }
+        squares * squares / fourths
     }
 }
 

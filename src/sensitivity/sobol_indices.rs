@@ -78,8 +78,9 @@ pub struct PairIndices {
 
 const NO_ROWS: &str = "no row of the design has all its outcomes";
 
-/// With the variance of an outcome made by fewer rows than this, a bootstrap is not to be trusted.
-const FEWEST_EFFECTIVE_ROWS: f64 = 30.0;
+/// With the variance of an outcome made by fewer rows than this, a bootstrap is not to be trusted: of lognormal
+/// outcomes an interval for 95 % was measured to hold 79 to 92 % below, 91 to 94 % above.
+const FEWEST_EFFECTIVE_ROWS: f64 = 200.0;
 
 /// The Sobol' indices of one outcome, or of a breach indicator (1, 0, NaN).
 ///

@@ -58,6 +58,32 @@ fn property_an_outcome_that_varies_by_rounding_has_no_effects() {
 }
 
 #[test]
+fn analytic_a_skewed_outcome_has_intervals_only_from_enough_walks() {
+    // exp(2.5 z₁ + 1.5 z₂): the variance of 1000 walks comes from a handful of them.
+    let effects = |orders: usize, a: f64, b: f64| {
+        let walks = Walks::new(vec![vec![0], vec![1]], None, orders, 7).expect("walks");
+        let points = walks.points(0, &normals(orders, 4, 3)).expect("points");
+        let outcomes: Vec<f64> = (0..points.rows())
+            .map(|k| (a * points.get(k, 0) + b * points.get(k, 1)).exp())
+            .collect();
+        walks.effects(&outcomes, 0.9999).expect("effects").effects
+    };
+    for effect in effects(1000, 2.5, 1.5) {
+        assert!(effect.value.is_some());
+        assert!(effect.interval.why_none().is_some_and(|why| why.contains("few walks")));
+    }
+    // exp(0.5 z₁ + 0.3 z₂): with vⱼ = exp(σⱼ²) − 1 the effects are vᵢ + v₁v₂/2 over v₁ + v₂ + v₁v₂.
+    let (v, w) = (0.25f64.exp_m1(), 0.09f64.exp_m1());
+    let all = v + w + v * w;
+    for (effect, exact) in
+        effects(4000, 0.5, 0.3).iter().zip([(v + v * w / 2.0) / all, (w + v * w / 2.0) / all])
+    {
+        let interval = effect.interval.interval().expect("an interval");
+        assert!(interval.contains(exact) && interval.width() < 0.2, "{interval:?} {exact}");
+    }
+}
+
+#[test]
 fn published_g_function_of_eight_inputs() {
     // Closed forms of Sobol's g with a = (0, 1, 4.5, 9, 99, 99, 99, 99): Sᵢ plus equal shares of every interaction.
     let a = [0.0, 1.0, 4.5, 9.0, 99.0, 99.0, 99.0, 99.0];
