@@ -14,6 +14,7 @@ pub mod given_sample;
 pub mod known;
 mod limit_state;
 mod looks;
+pub mod model_form;
 mod pick_freeze;
 mod rare;
 mod record;

@@ -73,7 +73,14 @@ pub fn rare_events(study: &Study, record: &Record, progress: &Progress) -> Resul
     let pairs = (0..limits).flat_map(|i| (i + 1..limits).map(move |j| Event::Both(i, j)));
     let pairs = pairs.filter(|_| chosen.is_some());
     let events = each.chain(pairs).chain((limits > 1).then_some(Event::Any)).filter(|&event| {
-        chosen.is_some() || seen(counts, event).is_some_and(|seen| seen.breaches < FEW_BREACHES)
+        let seen = seen(counts, event);
+        // Of the limit that no study states, a search is worth it where samples showed that it can be breached.
+        let implied = |members: Vec<usize>| members.iter().any(|&i| study.limits[i].implied);
+        let unstated = !event.is_union() && event.members(limits).is_ok_and(implied);
+        if unstated && seen.is_none_or(|seen| seen.breaches == 0) {
+            return false;
+        }
+        chosen.is_some() || seen.is_some_and(|seen| seen.breaches < FEW_BREACHES)
     });
     let state = DescentLimitState::new(study, progress);
     let mut found = Vec::new();

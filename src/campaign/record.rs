@@ -10,6 +10,9 @@ use crate::study::{Limit, Study};
 /// How many faulted samples are remembered one by one.
 const REMEMBERED: usize = 20;
 
+/// How many extreme samples of each outcome are remembered.
+const EXTREMES: usize = 16;
+
 /// A sample that could not be computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FaultedSample {
@@ -70,6 +73,9 @@ pub struct Record {
     not_deployed: u64,
     fault_counts: Vec<(Fault, u64)>,
     faulted: Vec<FaultedSample>,
+    /// Of each outcome the most extreme values, the most extreme first, and their samples: the largest, of the time
+    /// the shortest.
+    extremes: [Vec<(f64, u64)>; OUTCOME_COUNT],
 }
 
 impl Record {
@@ -90,6 +96,7 @@ impl Record {
             not_deployed: 0,
             fault_counts: Vec::new(),
             faulted: Vec::new(),
+            extremes: std::array::from_fn(|_| Vec::with_capacity(EXTREMES + 1)),
         })
     }
 
@@ -110,6 +117,7 @@ impl Record {
                 for (j, summary) in self.summaries.iter_mut().enumerate() {
                     summary.add(table.outcomes.get(k, j));
                 }
+                self.note_extremes(table, k);
                 self.not_deployed += u64::from(!table.deployed[k]);
             }
             self.counts.push_partly(breached, unknown);
@@ -118,6 +126,33 @@ impl Record {
                 self.by_replicate[replicate as usize].push_partly(breached, unknown);
             }
         }
+    }
+
+    fn note_extremes(&mut self, table: &OutcomeTable, row: usize) {
+        for (j, extremes) in self.extremes.iter_mut().enumerate() {
+            let value = table.outcomes.get(row, j);
+            let rank = if j == OutcomeQuantity::Time as usize { -value } else { value };
+            if extremes.len() == EXTREMES && extremes.last().is_some_and(|last| rank <= last.0) {
+                continue;
+            }
+            let place = extremes.partition_point(|other| rank <= other.0);
+            extremes.insert(place, (rank, table.first + row as u64));
+            extremes.truncate(EXTREMES);
+        }
+    }
+
+    /// The samples with the most extreme outcomes, each once: the shortest, and those with the largest of each other
+    /// outcome; the most extreme of every outcome first, then the second of every outcome, and so on.
+    pub fn extreme_samples(&self) -> Vec<u64> {
+        let mut samples = Vec::new();
+        for place in 0..EXTREMES {
+            for (_, sample) in self.extremes.iter().filter_map(|extremes| extremes.get(place)) {
+                if !samples.contains(sample) {
+                    samples.push(*sample);
+                }
+            }
+        }
+        samples
     }
 
     fn note_fault(&mut self, index: u64, fault: Fault) {

@@ -13,7 +13,8 @@ use std::path::PathBuf;
 /// Without a command: `run`, on the embedded study of the HABE brake.
 ///
 /// Exit codes: 0 done and the requirement, if any, is met; 1 the study cannot be run; 2 usage; 3 done,
-/// requirement not met; 4 done, undecided at the stated confidence; 130 stopped by Ctrl-C.
+/// requirement not met; 4 done, undecided at the stated confidence; 5 shards are missing; 130 stopped by Ctrl-C;
+/// 143 a shard that was stopped. Of `shard`, 2 is also a plan or a number that no second attempt would mend.
 #[derive(Debug, Parser)]
 #[command(name = "reeldown", version, args_conflicts_with_subcommands = true, max_term_width = 100)]
 pub(super) struct Arguments {
@@ -30,6 +31,14 @@ pub(super) struct Arguments {
 pub(super) enum Command {
     /// Run a study: probabilities of breach, verdict, margins, drivers; write report and tables
     Run(RunArguments),
+    /// Cut a run into shards, for a cluster or a queue: one file that every machine takes its part from
+    Plan(PlanArguments),
+    /// Compute one shard of a plan; one that is there already is left as it is
+    Shard(ShardArguments),
+    /// Print the numbers of the shards that are not there, as an array job takes them (3,7-9)
+    Missing(MissingArguments),
+    /// Join the shards of a plan and report on them, byte for byte as one machine would
+    Merge(MergeArguments),
     /// Compute one nominal descent and show its outcomes
     Descend(DescendArguments),
     /// Say what changed between two finished runs: inputs, probabilities, margins, drivers
@@ -98,8 +107,9 @@ pub(super) struct StudyArguments {
     pub set: Vec<String>,
 }
 
+/// A study whose samples are wanted.
 #[derive(Debug, Args)]
-pub(super) struct RunArguments {
+pub(super) struct SampledStudy {
     #[command(flatten)]
     pub study: StudyArguments,
     /// Number of samples, in place of the study's; the budget of a study that samples until something
@@ -108,15 +118,17 @@ pub(super) struct RunArguments {
     /// Seed of every random stream, in place of the study's
     #[arg(long, value_name = "S")]
     pub seed: Option<String>,
+}
+
+/// Where the results of a run go, and how.
+#[derive(Debug, Args)]
+pub(super) struct RunOutput {
     /// Directory for report and tables [default: runs/<study>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Write into the directory even if it holds something else than earlier results of this study
     #[arg(long)]
     pub force: bool,
-    /// Continue a run that was interrupted or killed, or a shorter one, in the same directory
-    #[arg(long)]
-    pub resume: bool,
     #[command(flatten)]
     pub threads: Threads,
     /// Print the findings as one JSON object in SI, and nothing else, on standard output
@@ -125,6 +137,70 @@ pub(super) struct RunArguments {
     /// Print nothing on standard output but errors; the exit code tells the verdict
     #[arg(long, conflicts_with = "json")]
     pub quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RunArguments {
+    #[command(flatten)]
+    pub sampled: SampledStudy,
+    #[command(flatten)]
+    pub output: RunOutput,
+    /// Continue a run that was interrupted or killed, or a shorter one, in the same directory
+    #[arg(long)]
+    pub resume: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct PlanArguments {
+    #[command(flatten)]
+    pub sampled: SampledStudy,
+    /// Number of shards; Slurm as it comes takes at most 1000
+    #[arg(long, value_name = "M")]
+    pub shards: u64,
+    /// Directory for plan.json and the shards [default: runs/<study>-shards]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace another plan
+    #[arg(long)]
+    pub force: bool,
+    /// Write the scripts of a Slurm array job and of the merge after it
+    #[arg(long)]
+    pub slurm: bool,
+    /// Write the manifest of a Kubernetes Indexed Job that runs this image
+    #[arg(long, value_name = "IMAGE")]
+    pub kubernetes: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ShardArguments {
+    /// The plan
+    #[arg(value_name = "PLAN.json")]
+    pub plan: PathBuf,
+    /// Number of the shard, from 0; auto: from the environment, where array jobs, indexed jobs and parallel
+    /// launchers put it
+    #[arg(long, value_name = "K|auto")]
+    pub shard: String,
+    #[command(flatten)]
+    pub threads: Threads,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct MissingArguments {
+    /// The plan
+    #[arg(value_name = "PLAN.json")]
+    pub plan: PathBuf,
+    /// Number that the first shard has in what is printed: 1 for engines that count from 1
+    #[arg(long, value_name = "FIRST", default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..=1))]
+    pub from: u64,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct MergeArguments {
+    /// The plan; its shards are beside it
+    #[arg(value_name = "PLAN.json")]
+    pub plan: PathBuf,
+    #[command(flatten)]
+    pub output: RunOutput,
 }
 
 #[derive(Debug, Args)]
@@ -260,6 +336,17 @@ pub(super) struct CheckArguments {
     /// Print the resolved study as one JSON object in SI, and nothing else, on standard output
     #[arg(long)]
     pub json: bool,
+}
+
+impl SampledStudy {
+    /// Loads the study with everything that is typed beside it.
+    pub fn load(&self) -> Result<Study> {
+        let options = [("--samples", "samples", &self.samples), ("--seed", "seed", &self.seed)];
+        let options = options.into_iter().filter_map(|(option, key, value)| {
+            Some((option, format!("sampling.{key}={}", value.as_ref()?)))
+        });
+        self.study.load(&options.collect::<Vec<_>>())
+    }
 }
 
 impl StudyArguments {

@@ -1,9 +1,9 @@
 //! `reeldown calibrate`: rig runs in, a posterior card out.
 
 use super::calibrate_arguments::CalibrateArguments;
+use super::command_line::quoted;
 use super::figure_files::write_report_figures;
 use super::output::{say, say_error, say_notes};
-use super::run::quoted;
 use super::watch::{Watch, stop_on_interrupt};
 use super::{Ending, done};
 use crate::campaign::calibration::duplicates::refuse_twice;

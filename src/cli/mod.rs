@@ -4,19 +4,23 @@ mod arguments;
 mod calibrate;
 mod calibrate_arguments;
 mod check;
+mod command_line;
 mod compare;
 mod descend;
 mod describe;
 mod diagnostics;
+mod engines;
 mod figure_files;
 mod output;
 mod paper;
 mod parentage;
+mod plan_file;
 mod replay;
 mod rig;
 mod rig_arguments;
 mod run;
 mod sensitivity_table;
+mod shards;
 mod sweep;
 mod tighten;
 mod trade_tables;
@@ -40,8 +44,14 @@ pub(crate) enum Ending {
     NotMet,
     /// Done, and the requirement is undecided.
     Undecided,
+    /// Shards of a plan are not there.
+    Incomplete,
+    /// A shard cannot be computed, and no second attempt would change that.
+    Permanent,
     /// Stopped by Ctrl-C with what was computed kept.
     Interrupted,
+    /// A shard was stopped; nothing was left of it.
+    Terminated,
 }
 
 impl From<Ending> for ExitCode {
@@ -51,7 +61,10 @@ impl From<Ending> for ExitCode {
             Ending::Failed => 1,
             Ending::NotMet => 3,
             Ending::Undecided => 4,
+            Ending::Incomplete => 5,
+            Ending::Permanent => 2,
             Ending::Interrupted => 130,
+            Ending::Terminated => 143,
         })
     }
 }
@@ -77,10 +90,14 @@ pub fn main() -> ExitCode {
 fn carry_out(arguments: Arguments) -> Result<Ending> {
     match arguments.command {
         None => {
-            misspelt_command(arguments.run.study.study.as_deref())?;
+            misspelt_command(arguments.run.sampled.study.study.as_deref())?;
             run::run(&arguments.run)
         }
         Some(Command::Run(run)) => run::run(&run),
+        Some(Command::Plan(plan)) => shards::plan(&plan),
+        Some(Command::Shard(shard)) => shards::shard(&shard),
+        Some(Command::Missing(missing)) => shards::missing(&missing),
+        Some(Command::Merge(merge)) => run::merge(&merge),
         Some(Command::Descend(descend)) => descend::descend(&descend),
         Some(Command::Calibrate(calibrate)) => calibrate::calibrate(&calibrate),
         Some(Command::Compare(compare)) => compare::compare(&compare),

@@ -1,8 +1,8 @@
 //! `reeldown paper`: the paper's figures and statements, held against a design.
 
 use super::arguments::PaperArguments;
+use super::command_line::quoted;
 use super::figure_files::write_report_figures;
-use super::run::quoted;
 use super::{Ending, done};
 use crate::error::{Error, Result};
 use crate::findings::paper::{PaperFinding, Verdict, paper as findings};

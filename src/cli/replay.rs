@@ -16,12 +16,13 @@ pub(super) fn replay(arguments: &ReplayArguments) -> Result<Ending> {
     let path = &arguments.outcomes;
     let reader = OutcomesReader::open(path)?;
     let study = parentage::study(path, reader.parentage())?;
-    if arguments.index >= reader.rows() {
+    let last = (reader.first() + reader.rows()).saturating_sub(1);
+    if reader.rows() == 0 || !(reader.first()..=last).contains(&arguments.index) {
         return Err(Error::argument(format!(
-            "there is no sample {}: {} holds samples 0 to {}",
+            "there is no sample {}: {} holds samples {} to {last}",
             arguments.index,
             path.display(),
-            reader.rows().saturating_sub(1)
+            reader.first()
         )));
     }
     let recorded = reader.read(&study, arguments.index, 1)?;

@@ -1,12 +1,14 @@
-//! `reeldown run`: the main job.
+//! `reeldown run`: the main job; and `reeldown merge`: the same, of samples that were computed elsewhere.
 
-use super::arguments::RunArguments;
+use super::arguments::{MergeArguments, RunArguments, RunOutput};
+use super::command_line::{quoted, run_of};
 use super::figure_files::write_report_figures;
 use super::output::{say, say_error, say_notes, stdout_style};
+use super::plan_file::Plan;
 use super::sensitivity_table::{SENSITIVITY, write_sensitivity};
 use super::trade_tables::{TRADE, write_trade};
 use super::watch::{Watch, stop_on_interrupt};
-use super::{Ending, parentage, replay};
+use super::{Ending, parentage, replay, shards};
 use crate::campaign::{self, Looks, Progress, ROW_GROUP, Record, RowGroups};
 use crate::error::{Error, Result};
 use crate::findings::{self, Evidence, Findings, VerdictWord};
@@ -36,37 +38,78 @@ const SPOT_CHECKS: usize = 8;
 
 /// Runs a study and writes its report and tables.
 pub(super) fn run(arguments: &RunArguments) -> Result<Ending> {
-    let options =
-        [("--samples", "samples", &arguments.samples), ("--seed", "seed", &arguments.seed)];
-    let options: Vec<(&str, String)> = options
-        .into_iter()
-        .filter_map(|(option, key, value)| {
-            Some((option, format!("sampling.{key}={}", value.as_ref()?)))
-        })
-        .collect();
-    let study = arguments.study.load(&options)?;
+    let study = arguments.sampled.load()?;
     study.design.validate()?;
-    let directory =
-        arguments.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(arguments.study.name()));
+    let command = run_of(&arguments.sampled);
+    let asked = Asked {
+        study: &study,
+        name: &arguments.sampled.study.name(),
+        to_go_on: format!("{command} --resume"),
+        command,
+        source: if arguments.resume { Source::Resumed } else { Source::Computed },
+    };
+    into_directory(&arguments.output, asked)
+}
+
+/// Joins the shards of a plan, and reports on them as if they had been computed here.
+pub(super) fn merge(arguments: &MergeArguments) -> Result<Ending> {
+    let (plan, study) = Plan::read(&arguments.plan)?;
+    let shards = shards::all(&plan, &arguments.plan)?;
+    let asked = Asked {
+        study: &study,
+        name: &plan.name,
+        to_go_on: format!("reeldown merge {}", quoted(&arguments.plan.display().to_string())),
+        command: plan.command,
+        source: Source::Shards(shards),
+    };
+    into_directory(&arguments.output, asked)
+}
+
+/// What is to be run and reported on.
+struct Asked<'a> {
+    study: &'a Study,
+    /// The study's short name.
+    name: &'a str,
+    /// The command that gives the same numbers.
+    command: String,
+    /// The command that goes on after an interruption.
+    to_go_on: String,
+    source: Source,
+}
+
+/// Where samples come from before any is computed.
+enum Source {
+    /// From nowhere: all are computed.
+    Computed,
+    /// From a shorter run in the same directory, or one that ended early.
+    Resumed,
+    /// From the shards of a plan, all of them in their order.
+    Shards(Vec<OutcomesReader>),
+}
+
+fn into_directory(output: &RunOutput, asked: Asked<'_>) -> Result<Ending> {
+    let study = asked.study;
+    let directory = output.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(asked.name));
     // What stands in the way is said now, not after the descents.
     let contents = Contents {
         kind: "run",
         study: &study.title,
         files: &[OUTCOMES, FINDINGS, REPORT, REPORT_HTML, SENSITIVITY, TRADE, PROVENANCE],
-        force: arguments.force,
+        force: output.force,
     };
     let directory = ResultDirectory::open(&directory, contents)?;
-    say_notes(&study);
-    campaign::with_threads(arguments.threads.asked(), || {
-        Run { arguments, study: &study, directory, parentage: parentage::of(&study) }.carry_out()
+    say_notes(study);
+    campaign::with_threads(output.threads.asked(), || {
+        Run { output, study, directory, parentage: parentage::of(study), asked }.carry_out()
     })?
 }
 
 struct Run<'a> {
-    arguments: &'a RunArguments,
+    output: &'a RunOutput,
     study: &'a Study,
     directory: ResultDirectory,
     parentage: Parentage,
+    asked: Asked<'a>,
 }
 
 impl Run<'_> {
@@ -117,6 +160,10 @@ impl Run<'_> {
         if progress.stopping() {
             return Ok(self.interrupted(samples, true));
         }
+        let model_form = campaign::model_form::run_model_form(self.study, &progress)?;
+        if progress.stopping() {
+            return Ok(self.interrupted(samples, true));
+        }
         let findings = findings::gather(&Evidence {
             study: self.study,
             record: &record,
@@ -133,15 +180,16 @@ impl Run<'_> {
             known: or_reason(known, NO_TRADE),
             calibrated,
             epistemic: or_reason(epistemic, NO_EPISTEMIC),
-            command: self.command(),
+            model_form: model_form.ok_or_else(|| "the study states no limit".to_owned()),
+            command: self.asked.command.clone(),
         })?;
         self.write(&findings)?;
         let times = (begun.elapsed().as_secs_f64(), sampled.as_secs_f64());
         self.write_provenance(times, progress.done(), (computed, samples - computed))?;
-        let Run { arguments, directory, .. } = self;
+        let Run { output, directory, .. } = self;
         let path = directory.path().join(REPORT);
         directory.finish()?;
-        report(arguments, &findings, &path)
+        report(output, &findings, &path)
     }
 
     /// Computes the samples that are not there yet and writes all of them.
@@ -151,8 +199,11 @@ impl Run<'_> {
         let sampler = campaign::sampler(self.study)?;
         let mut looks = Looks::new(self.study)?;
         self.take_up(&path)?;
-        let before = if self.arguments.resume { self.earlier(&path)? } else { None };
-        if let Some(reader) = before.as_ref().filter(|reader| reader.rows() > most) {
+        let resumed = match self.asked.source {
+            Source::Resumed => self.earlier(&path)?,
+            _ => None,
+        };
+        if let Some(reader) = resumed.as_ref().filter(|reader| reader.rows() > most) {
             return Err(too_many(&path, reader.rows(), most));
         }
         let mut rows = Rows {
@@ -160,15 +211,24 @@ impl Run<'_> {
             writer: OutcomesWriter::create(&path, self.study, &self.parentage)?,
             groups: RowGroups::default(),
         };
-        if let Some(reader) = &before {
-            while looks.taken() < reader.rows() && !looks.over() {
+        let before = match &self.asked.source {
+            Source::Shards(shards) => &shards[..],
+            _ => resumed.as_slice(),
+        };
+        for reader in before {
+            let end = reader.first() + reader.rows();
+            while looks.taken() < end && !looks.over() && !progress.stopping() {
                 let start = looks.taken();
-                let count = (reader.rows() - start).min(ROW_GROUP) as usize;
-                let table = reader.read(self.study, start, count)?;
-                self.verify(&path, &table)?;
+                // No table goes beyond a row group's end, nor beyond a look.
+                let group = (start / ROW_GROUP + 1) * ROW_GROUP;
+                let count = end.min(group).min(looks.next()) - start;
+                let table = reader.read(self.study, start, count as usize)?;
+                self.verify(reader.path(), &table)?;
                 looks.take(&table)?;
                 rows.push(table)?;
             }
+        }
+        if let Some(reader) = resumed.filter(|_| !progress.stopping()) {
             // A run with another rule has more rows than this study takes: none of them is thrown away.
             if looks.taken() < reader.rows() {
                 return Err(too_many(&path, reader.rows(), looks.taken()));
@@ -196,9 +256,13 @@ impl Run<'_> {
             let again = replay::compute(self.study, index)?;
             if !replay::same_bits((table, row), (&again, 0)) {
                 let reason = format!("sample {index} computed again differs from its row");
+                let (action, remedy) = match self.asked.source {
+                    Source::Shards(_) => ("merge", "compute shards and merge them with one build"),
+                    _ => ("resume", "run without --resume"),
+                };
                 let help =
-                    "the file was changed, or this build computes other bits: run without --resume";
-                return Err(Error::file(path, "resume", reason, help));
+                    format!("the file was changed, or this build computes other bits: {remedy}");
+                return Err(Error::file(path, action, reason, help));
             }
         }
         Ok(())
@@ -210,11 +274,15 @@ impl Run<'_> {
         let Some(left) = UnfinishedTable::recover(path)? else { return Ok(()) };
         let reader = OutcomesReader::open(&left.path())?;
         let rows = reader.rows();
-        if !self.arguments.resume {
-            say_error(&format!(
-                "note: the {rows} samples of a run that ended early are replaced; --resume would have kept them"
-            ));
-            return left.discard();
+        match self.asked.source {
+            Source::Resumed => {}
+            Source::Computed => {
+                say_error(&format!(
+                    "note: the {rows} samples of a run that ended early are replaced; --resume would have kept them"
+                ));
+                return left.discard();
+            }
+            Source::Shards(_) => return left.discard(),
         }
         // A table that cannot be read is no reason to drop one that can.
         let kept = OutcomesReader::open(path).ok().filter(|kept| self.holds_rows_of_this(kept));
@@ -229,7 +297,7 @@ impl Run<'_> {
     /// Whether the rows of a table are those that this run computes.
     fn holds_rows_of_this(&self, reader: &OutcomesReader) -> bool {
         let same = |key: &str| reader.parentage().0.get(key) == self.parentage.0.get(key);
-        same("version") && same("row_digest")
+        same("version") && same("row_digest") && reader.first() == 0
     }
 
     /// The run to continue, if there is one and it is of this study.
@@ -259,10 +327,10 @@ impl Run<'_> {
             format!("stopped after {computed} of {most}{} samples", plan.samples)
         };
         say_error(&format!(
-            "{when}; they are in {}\nto go on: {} --resume{}",
+            "{when}; they are in {}\nto go on: {}{}",
             self.directory.path().join(OUTCOMES).display(),
-            self.command(),
-            self.arguments.out.as_ref().map_or(String::new(), |out| {
+            self.asked.to_go_on,
+            self.output.out.as_ref().map_or(String::new(), |out| {
                 format!(" --out {}", quoted(&out.display().to_string()))
             }),
         ));
@@ -273,20 +341,6 @@ impl Run<'_> {
         let factors = campaign::factors(self.study).len() as u64;
         let pairs = self.study.sensitivity.pairs.len() as u64;
         self.study.sensitivity.base_samples * (2 + factors + pairs)
-    }
-
-    /// The command that gives the same numbers.
-    fn command(&self) -> String {
-        let mut words = vec!["reeldown".to_owned(), "run".to_owned()];
-        if let Some(study) = &self.arguments.study.study {
-            words.push(quoted(&study.display().to_string()));
-        }
-        let options = [("--samples", &self.arguments.samples), ("--seed", &self.arguments.seed)];
-        for (option, value) in options {
-            words.extend(value.iter().map(|value| format!("{option} {}", quoted(value))));
-        }
-        words.extend(self.arguments.study.set.iter().map(|s| format!("--set {}", quoted(s))));
-        words.join(" ")
     }
 
     fn write(&self, findings: &Findings) -> Result<()> {
@@ -311,7 +365,7 @@ impl Run<'_> {
             "host": std::fs::read_to_string("/proc/sys/kernel/hostname").ok().map(|h| h.trim().to_owned()),
             "architecture": std::env::consts::ARCH,
             "operating_system": std::env::consts::OS,
-            "threads": self.arguments.threads.asked().unwrap_or_else(campaign::threads),
+            "threads": self.output.threads.asked().unwrap_or_else(campaign::threads),
             "wall_time_s": seconds,
             "sampling_time_s": sampling,
             "descents_computed": descents,
@@ -324,10 +378,10 @@ impl Run<'_> {
 }
 
 /// Shows a finished run, and says how it ended.
-fn report(arguments: &RunArguments, findings: &Findings, path: &Path) -> Result<Ending> {
-    if arguments.json {
+fn report(output: &RunOutput, findings: &Findings, path: &Path) -> Result<Ending> {
+    if output.json {
         say(&render::json(findings)?)?;
-    } else if !arguments.quiet {
+    } else if !output.quiet {
         let summary = render::terminal(findings, stdout_style());
         say(&format!("{summary}\nreport: {}", path.display()))?;
     }
@@ -392,13 +446,4 @@ fn or_reason<T>(found: Result<Option<T>>, none: &str) -> std::result::Result<T, 
         Ok(found) => found.ok_or_else(|| none.to_owned()),
         Err(reason) => Err(reason.to_string()),
     }
-}
-
-/// A word of a command line, quoted if the shell would take it apart.
-pub(super) fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        return word.to_owned();
-    }
-    format!("'{}'", word.replace('\'', r"'\''"))
 }

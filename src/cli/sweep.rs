@@ -1,9 +1,9 @@
 //! `reeldown sweep`: the design space along one or two paths.
 
 use super::arguments::SweepArguments;
+use super::command_line::quoted;
 use super::figure_files::write_report_figures;
 use super::output::{say, say_error, say_notes};
-use super::run::quoted;
 use super::watch::{Watch, stop_on_interrupt};
 use super::{Ending, done, parentage};
 use crate::campaign::sweep::{Grid, Meaning, SweptPath, check, run_sweep, usual_samples};

@@ -1,8 +1,8 @@
 //! `reeldown tighten`: which tolerances to buy.
 
 use super::arguments::TightenArguments;
+use super::command_line::quoted;
 use super::output::{say, say_error, say_notes};
-use super::run::quoted;
 use super::watch::{Watch, stop_on_interrupt};
 use super::{Ending, done};
 use crate::campaign::{self, Progress};

@@ -77,3 +77,25 @@ pub(super) fn stop_on_interrupt(progress: &Arc<Progress>) -> Result<()> {
     })
     .map_err(|reason| Error::argument(format!("cannot catch Ctrl-C: {reason}")))
 }
+
+/// Makes the request to end by which queues and clusters take a machine back stop `progress` at the next batch.
+///
+/// # Errors
+/// If the signal cannot be caught.
+#[cfg(unix)]
+pub(super) fn stop_on_termination(progress: &Arc<Progress>) -> Result<()> {
+    let progress = Arc::clone(progress);
+    let mut signals = signal_hook::iterator::Signals::new([signal_hook::consts::SIGTERM])
+        .map_err(|reason| Error::argument(format!("cannot catch SIGTERM: {reason}")))?;
+    thread::spawn(move || signals.forever().for_each(|_| progress.request_stop()));
+    Ok(())
+}
+
+/// Elsewhere there is no such request.
+///
+/// # Errors
+/// None.
+#[cfg(not(unix))]
+pub(super) fn stop_on_termination(_: &Arc<Progress>) -> Result<()> {
+    Ok(())
+}

@@ -37,6 +37,17 @@ impl Model {
         matches!(self, Model::DetailedDynamic | Model::DetailedQuasiSteady)
     }
 
+    /// The model with the same motion and the other treatment of heat.
+    #[must_use]
+    pub fn with_other_heat(self) -> Self {
+        match self {
+            Model::Dynamic => Model::DetailedDynamic,
+            Model::QuasiSteady => Model::DetailedQuasiSteady,
+            Model::DetailedDynamic => Model::Dynamic,
+            Model::DetailedQuasiSteady => Model::QuasiSteady,
+        }
+    }
+
     /// The model of a name.
     pub fn from_name(name: &str) -> Option<Model> {
         Self::ALL.into_iter().find(|model| model.name() == name)

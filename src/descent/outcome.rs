@@ -131,12 +131,19 @@ pub enum Fault {
     StepTooSmall,
     /// A value stopped being finite.
     NotFinite,
+    /// What came out is physically impossible, or does not settle as the tolerance is tightened.
+    Inaccurate,
 }
 
 impl Fault {
     /// Every kind of fault.
-    pub const ALL: [Fault; 4] =
-        [Fault::ImpossibleInput, Fault::TooManySteps, Fault::StepTooSmall, Fault::NotFinite];
+    pub const ALL: [Fault; 5] = [
+        Fault::ImpossibleInput,
+        Fault::TooManySteps,
+        Fault::StepTooSmall,
+        Fault::NotFinite,
+        Fault::Inaccurate,
+    ];
 
     /// The fault of a name.
     pub fn from_name(name: &str) -> Option<Fault> {
@@ -150,6 +157,7 @@ impl Fault {
             Fault::TooManySteps => "too-many-steps",
             Fault::StepTooSmall => "step-too-small",
             Fault::NotFinite => "not-finite",
+            Fault::Inaccurate => "inaccurate",
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The verdict: is the requirement demonstrated?
 
-use super::{CONFIDENCE, sequence};
+use super::probabilities::{EventKind, ProbabilityFinding};
+use super::sequence;
 use crate::campaign::Record;
 use crate::error::Result;
 use crate::numerics::interval::Earned;
@@ -34,7 +35,7 @@ pub enum VerdictWord {
 pub enum Decision {
     /// Exact binomial bounds on independent samples.
     Counts(Box<Demonstration>),
-    /// The one-sided ends of Student's t over independent replicates.
+    /// The one-sided ends of the interval over independent replicates.
     Replicates {
         /// Lower and upper bound of the probability of any breach, each at the requirement's confidence.
         bounds: Earned,
@@ -73,10 +74,17 @@ pub(super) fn percent(share: f64) -> String {
 }
 
 /// The verdict of a study's samples.
-pub(super) fn verdict(study: &Study, record: &Record) -> Result<VerdictFinding> {
+///
+/// Without a requirement the headline says what the table says of any breach, interval included.
+pub(super) fn verdict(
+    study: &Study,
+    record: &Record,
+    probabilities: &[ProbabilityFinding],
+) -> Result<VerdictFinding> {
     let counts = record.counts().any();
     let Some(stated) = study.requirement else {
-        let statement = no_requirement(study, &counts)?;
+        let any = probabilities.iter().find(|p| p.kind == EventKind::Any);
+        let statement = no_requirement(any);
         return Ok(VerdictFinding {
             word: VerdictWord::NoRequirement,
             statement,
@@ -127,26 +135,21 @@ pub(super) fn verdict(study: &Study, record: &Record) -> Result<VerdictFinding> 
     })
 }
 
-fn no_requirement(study: &Study, counts: &Proportion) -> Result<String> {
-    if study.limits.is_empty() {
-        return Ok("The study states no limit: there is nothing to breach.".to_owned());
-    }
-    let estimate = counts.estimate().map_or("unknown".to_owned(), percent);
-    let (interval, confidence) = match study.sampling.stopping {
-        Some(plan) => {
-            (sequence::together(study, &plan, *counts, plan.confidence)?, plan.confidence)
+fn no_requirement(any: Option<&ProbabilityFinding>) -> String {
+    let Some(any) = any else {
+        return "The study states no limit: there is nothing to breach.".to_owned();
+    };
+    let estimate = any.probability.map_or("unknown".to_owned(), percent);
+    let interval = match &any.interval {
+        Earned::Interval(i) => {
+            let (lower, upper) = (percent(i.lower), percent(i.upper));
+            format!("{} interval {lower} to {upper}", percent(i.confidence))
         }
-        None => (counts.interval(CONFIDENCE)?, CONFIDENCE),
+        Earned::None(why) => format!("no interval: {why}"),
     };
-    let interval = match interval.interval() {
-        Some(i) => format!("{} to {}", percent(i.lower), percent(i.upper)),
-        None => "none".to_owned(),
-    };
-    Ok(format!(
-        "The study states no requirement. Any limit is breached with probability {estimate} \
-         ({} interval {interval}).",
-        percent(confidence)
-    ))
+    format!(
+        "The study states no requirement. Any limit is breached with probability {estimate} ({interval})."
+    )
 }
 
 fn by_counts(

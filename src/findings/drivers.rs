@@ -1,6 +1,7 @@
 //! What drives the outcomes and the breaches: Sobol' indices from the pick-freeze design.
 
 use super::CONFIDENCE;
+use super::probabilities::breach_of;
 use crate::campaign::{PickFreezeOutcomes, in_parallel};
 use crate::descent::OutcomeQuantity;
 use crate::error::Result;
@@ -184,7 +185,7 @@ impl Output {
     fn title(self, study: &Study) -> String {
         match self {
             Output::Outcome(quantity) => quantity.title().to_owned(),
-            Output::Breach(i) => format!("breach of {}", study.limits[i].outcome.title()),
+            Output::Breach(i) => breach_of(&study.limits[i]),
             Output::AnyBreach => "breach of any limit".to_owned(),
         }
     }

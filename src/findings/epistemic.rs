@@ -114,7 +114,7 @@ pub(super) fn epistemic(
         in_parallel(&events, |event| self::event(study, outcomes, *event))
             .into_iter()
             .collect::<Result<_>>()?;
-    let limits: Vec<usize> = (0..study.limits.len()).collect();
+    let limits = study.stated_limits();
     let share_points = outcomes.shares.as_ref().map_or(0, |sample| sample.points());
     Ok(EpistemicFinding {
         none: None,

@@ -38,7 +38,7 @@ pub struct MarginQuantile {
 pub(super) fn margins(study: &Study, record: &Record) -> Result<Vec<MarginFinding>> {
     // With a replicated design the order statistics' intervals do not apply.
     let replicated = !record.by_replicate().is_empty();
-    let limits: Vec<usize> = (0..study.limits.len()).collect();
+    let limits = study.stated_limits();
     in_parallel(&limits, |&i| {
         let limit = &study.limits[i];
         let exceedances: Vec<f64> = record.margins(i).iter().map(|margin| -margin).collect();

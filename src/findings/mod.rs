@@ -16,6 +16,7 @@ mod inputs;
 pub mod known;
 mod margins;
 pub mod measures;
+mod model_form;
 mod numerical;
 pub mod paper;
 mod probabilities;
@@ -33,6 +34,7 @@ use crate::campaign::calibrated::CalibratedOutcomes;
 use crate::campaign::epistemic::EpistemicOutcomes;
 use crate::campaign::given_sample::GivenSample;
 use crate::campaign::known::KnownOutcomes;
+use crate::campaign::model_form::ModelFormOutcomes;
 use crate::campaign::screening::{ScreeningOutcomes, Slopes};
 use crate::campaign::shapley::ShapleyOutcomes;
 use crate::campaign::trade::TradeOutcomes;
@@ -56,6 +58,7 @@ pub use inputs::{CorrelationFinding, InputFinding};
 pub use known::KnownFinding;
 pub use margins::{MarginFinding, MarginQuantile};
 pub use measures::MeasuresFinding;
+pub use model_form::{FormFinding, ModelFormFinding};
 pub use numerical::{NumericalFinding, NumericalLimit};
 pub use probabilities::{EventKind, ProbabilityFinding};
 pub use rare::{DesignPointFinding, DesignPointInput, RareFinding, rare_findings};
@@ -81,6 +84,8 @@ pub struct Findings {
     pub probabilities: Vec<ProbabilityFinding>,
     /// Events too rare for the samples, by several methods.
     pub rare: Vec<RareFinding>,
+    /// The same samples by the other thermal model.
+    pub model_form: ModelFormFinding,
     /// What margin is left, by limit.
     pub margins: Vec<MarginFinding>,
     /// The spread of every outcome.
@@ -227,6 +232,8 @@ pub struct Evidence<'a> {
     pub calibrated: Option<CalibratedOutcomes>,
     /// Its nested descents, or why there are none.
     pub epistemic: std::result::Result<EpistemicOutcomes, String>,
+    /// Its first samples by the other thermal model too, or why they were not flown.
+    pub model_form: std::result::Result<ModelFormOutcomes, String>,
     /// The command that was given, to be given again.
     pub command: String,
 }
@@ -241,16 +248,21 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
     let mut drawn = study.clone();
     drawn.sampling.samples = record.counts().samples();
     let sampler = campaign::sampler(&drawn)?;
+    let mut numerical = numerical::numerical(study, record, &evidence.verification);
+    let probabilities = probabilities::probabilities(study, record)?;
+    let verdict = demonstration::verdict(study, record, &probabilities)?;
+    let verdict = numerical::heed(study, record, &evidence.verification, &mut numerical, verdict)?;
     let drivers = drivers::drivers(study, &evidence.pick_freeze)?;
     let shapley = shapley::shapley(study, &evidence.shapley)?;
     let epistemic = epistemic::epistemic(study, &evidence.epistemic)?;
     Ok(Findings {
         format: 1,
         title: study.title.clone(),
-        verdict: demonstration::verdict(study, record)?,
+        verdict,
         stopping: sequence::stopping(study, record.counts().samples(), evidence.stop),
-        probabilities: probabilities::probabilities(study, record)?,
+        probabilities,
         rare: rare::rare_findings(study, &evidence.rare, evidence.nominal.as_ref().ok()),
+        model_form: model_form::model_form(study, &evidence.model_form)?,
         margins: margins::margins(study, record)?,
         outcomes: OutcomeQuantity::ALL.map(|quantity| outcome(record, quantity)).to_vec(),
         nominal: nominal(study, &evidence.nominal),
@@ -272,7 +284,7 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
         exceptions: exceptions(record),
         inputs: inputs::inputs(study),
         correlations: inputs::correlations(study),
-        numerical: numerical::numerical(study, record, &evidence.verification),
+        numerical,
         method: MethodFinding {
             model: study.model.name(),
             design: sampler.describe() + &inputs::dependence(study),
@@ -349,7 +361,7 @@ fn caveats(study: &Study, advice: Option<String>) -> Vec<String> {
     if study.sampling.design.is_replicated() {
         caveats.push(
             "The points of this design are not independent: intervals come from its replicates \
-             (Student's t), and exact binomial ones do not apply."
+             (Korn and Graubard), and exact binomial ones of all points do not apply."
                 .to_owned(),
         );
     }

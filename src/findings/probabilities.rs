@@ -52,11 +52,22 @@ pub struct ProbabilityFinding {
 
 /// A breach of a limit in words.
 pub(super) fn title_of(limit: &Limit) -> String {
+    if limit.implied {
+        return format!("line not deployed after {}", limit.text);
+    }
     let side = match limit.kind {
         LimitKind::Max => "above",
         LimitKind::Min => "below",
     };
     format!("{} {side} {}", limit.outcome.title(), limit.text)
+}
+
+/// The same where indices of the event are listed.
+pub(super) fn breach_of(limit: &Limit) -> String {
+    match limit.implied {
+        true => title_of(limit),
+        false => format!("breach of {}", limit.outcome.title()),
+    }
 }
 
 /// Every event of a study: each limit, any of them, each pair.

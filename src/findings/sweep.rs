@@ -88,6 +88,9 @@ pub struct LimitFinding {
     pub text: String,
     /// SI.
     pub value: f64,
+    /// Whether the study does not state it: the line must run out while a descent is followed.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub implied: bool,
 }
 
 /// One cell.
@@ -203,6 +206,7 @@ pub fn sweep(
                 kind: limit.kind.name(),
                 text: limit.text.clone(),
                 value: limit.value,
+                implied: limit.implied,
             })
             .collect(),
         samples,

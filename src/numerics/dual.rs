@@ -112,6 +112,12 @@ impl<const N: usize> Real for Dual<N> {
     fn min(self, other: Self) -> Self {
         if self.value < other.value { self } else { other }
     }
+    fn beyond(self, bound: f64) -> Self {
+        if self.value.abs() <= bound { Self::constant(0.0) } else { self }
+    }
+    fn is_zero(self) -> bool {
+        self.value == 0.0
+    }
 }
 
 #[cfg(test)]

@@ -29,6 +29,10 @@ pub trait Real:
     fn mul_add(self, factor: Self, term: Self) -> Self;
     /// The smaller, with its derivatives; `other` where either is not a number.
     fn min(self, other: Self) -> Self;
+    /// Zero, without derivatives, where the magnitude is at most `bound`; the number itself elsewhere.
+    fn beyond(self, bound: f64) -> Self;
+    /// Whether it is zero, in every lane.
+    fn is_zero(self) -> bool;
 }
 
 impl Real for f64 {
@@ -55,5 +59,11 @@ impl Real for f64 {
     }
     fn min(self, other: Self) -> Self {
         if self < other { self } else { other }
+    }
+    fn beyond(self, bound: f64) -> Self {
+        if self.abs() <= bound { 0.0 } else { self }
+    }
+    fn is_zero(self) -> bool {
+        self == 0.0
     }
 }

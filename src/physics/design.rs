@@ -1,5 +1,6 @@
 //! One design: a value for every parameter, and a gap for every working surface.
 
+use super::balloon::Balloon;
 use super::parameters::{PARAMETER_COUNT, PARAMETERS, Parameter};
 use crate::error::{Error, Result};
 use crate::numerics::real::Real;
@@ -48,6 +49,7 @@ impl Target {
     /// Whether no other parameter has a say in which of its values are possible.
     pub fn is_checked_alone(&self) -> bool {
         ORDERED.iter().all(|&(small, large)| self.parameter != small && self.parameter != large)
+            && !RISING.contains(&self.parameter)
     }
 }
 
@@ -57,6 +59,18 @@ const ORDERED: [(Parameter, Parameter); 3] = [
     (Parameter::ReelEmptyRadius, Parameter::ReelFullRadius),
     (Parameter::PayloadExtractedWeight, Parameter::PayloadWeight),
 ];
+
+/// What decides how fast the balloon rises before release.
+const RISING: [Parameter; 5] = [
+    Parameter::BalloonMass,
+    Parameter::BalloonDragArea,
+    Parameter::BalloonAirDensity,
+    Parameter::BalloonFreeLift,
+    Parameter::PayloadWeight,
+];
+
+/// Speed of sound where balloons fly, m/s (U.S. Standard Atmosphere 1976, 11 to 20 km): the drag law holds far below it.
+const SPEED_OF_SOUND_M_PER_S: f64 = 295.07;
 
 /// A complete design, SI, in any number type.
 #[derive(Debug, Clone, PartialEq)]
@@ -142,6 +156,12 @@ impl Design<f64> {
         PARAMETERS.iter().all(|info| info.admits(self.get(info.parameter)))
             && self.gaps.iter().all(|&gap| Parameter::BrakeGap.info().admits(gap))
             && ORDERED.iter().all(|&(small, large)| fit(small, large))
+            && self.rise_speed_m_per_s() < SPEED_OF_SOUND_M_PER_S
+    }
+
+    /// How fast the balloon rises before release, m/s.
+    fn rise_speed_m_per_s(&self) -> f64 {
+        Balloon::new(self).rise_speed_m_per_s
     }
 
     /// Checks that every value is possible and that the values fit each other.
@@ -187,6 +207,14 @@ impl Design<f64> {
                     unit = small.quantity.si_unit(),
                 )));
             }
+        }
+        let rise = self.rise_speed_m_per_s();
+        if rise.is_nan() || rise >= SPEED_OF_SOUND_M_PER_S {
+            let named = RISING.map(|parameter| parameter.info().path).join(", ");
+            return Err(Error::argument(format!(
+                "the balloon would rise at {rise:.3e} m/s, faster than sound ({SPEED_OF_SOUND_M_PER_S} m/s): {named} do not \
+                 fit each other"
+            )));
         }
         Ok(())
     }

@@ -32,6 +32,7 @@
 )]
 
 use super::design::Design;
+use super::fluid::{CONVERGED, MORE_STEPS};
 use super::parameters::Parameter;
 use super::space::{DENSITY_TEMPERATURE_K, PI, SMALLEST_BORE, Space};
 use super::thermal::Thermal;
@@ -435,7 +436,7 @@ pub fn speed_of<R: Real, const P: usize>(
     let thick = (aim - thick.ln()) / (order - power);
     // The larger of the two: −min(−a, −b).
     let mut speed = -(-thin.ln()).min(-thick);
-    for _ in 0..SPEED_STEPS {
+    let step = |speed: R| {
         let (mut stiffness, mut lean) = (zero, zero);
         for i in 0..P {
             let grown = (power * (speed + groups[i])).exp();
@@ -446,12 +447,24 @@ pub fn speed_of<R: Real, const P: usize>(
         }
         let slope = order - power * (lean / stiffness);
         let miss = aim - order.mul_add(speed, stiffness.ln());
-        speed = speed + miss / slope;
+        miss / slope
+    };
+    let mut last = one;
+    for _ in 0..SPEED_STEPS {
+        last = step(speed);
+        speed = speed + last;
+    }
+    for _ in 0..MORE_STEPS {
+        if last.beyond(CONVERGED).is_zero() {
+            break;
+        }
+        last = step(speed).beyond(CONVERGED);
+        speed = speed + last;
     }
     speed.exp()
 }
 
-/// Newton steps of [`speed_of`]: the start is off by at most ln 2 in `ln X`, the convergence quadratic and monotone.
+/// Newton steps of [`speed_of`] that are always taken; the convergence is monotone, and in the end quadratic.
 const SPEED_STEPS: usize = 6;
 
 #[cfg(test)]

@@ -26,6 +26,14 @@ pub struct Fluid<R> {
 /// How many Newton steps invert the shear-thinned torque; see [`Fluid::speed_of_torque`].
 const INVERSION_STEPS: usize = 12;
 
+/// A Newton step for a logarithm that is no longer than this leaves an error below a rounding: `y` converges
+/// quadratically, with a constant below one.
+pub const CONVERGED: f64 = 1e-8;
+
+/// Newton steps beyond the usual ones, at most. Where the exponent `m` is near one, each adds about one to `y` until
+/// that is some `−ln(1 − m)`, which is at most 37 in doubles.
+pub const MORE_STEPS: usize = 64;
+
 impl<R: Real> Fluid<R> {
     /// The fluid of a design; `shear_thinning` says whether the design's `λ` is positive.
     #[inline(always)]
@@ -102,12 +110,23 @@ impl<R: Real> Fluid<R> {
         let one = R::constant(1.0);
         let group_per_speed = self.cross_time_s * thickening;
         let ln_a = (group_per_speed * newtonian_rad_per_s).ln();
-        let mut y = ln_a;
-        for _ in 0..INVERSION_STEPS {
+        let step = |y: R| {
             let growth = (self.cross_exponent * y).exp();
             let residual = order * (y - ln_a) - (one + growth).ln();
             let slope = order - self.cross_exponent * growth / (one + growth);
-            y = y - residual / slope;
+            residual / slope
+        };
+        let (mut y, mut last) = (ln_a, one);
+        for _ in 0..INVERSION_STEPS {
+            last = step(y);
+            y = y - last;
+        }
+        for _ in 0..MORE_STEPS {
+            if last.beyond(CONVERGED).is_zero() {
+                break;
+            }
+            last = step(y).beyond(CONVERGED);
+            y = y - last;
         }
         y.exp() / group_per_speed
     }

@@ -11,7 +11,7 @@ use super::estimate::{Estimate, Method};
 use super::event::{Evaluator, Event, FaultReading};
 use super::importance::combined;
 use super::limit_state::LimitState;
-use super::line::widen;
+use super::searched_lines::widen;
 use super::weighted::{WeightChecks, WeightedBreaches};
 use crate::error::{Error, Result};
 use crate::numerics::special::chi_squared;

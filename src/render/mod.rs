@@ -12,6 +12,7 @@ mod json;
 mod known_view;
 mod markdown;
 mod measures_view;
+mod model_form_view;
 mod paper;
 mod png;
 mod rig;

@@ -44,6 +44,9 @@ pub fn terminal(findings: &Findings, style: Style) -> String {
     if let Some(sharpest) = &view.verdict.sharpest {
         text += &format!("{}\n", wrapped(&sharpest.replace('`', "")));
     }
+    if let Some(form) = &view.model_form {
+        text += &format!("{}\n", wrapped(&form.headline));
+    }
     if let Some(stopping) = &view.stopping {
         text += &format!("{}\n", wrapped(stopping));
     }

@@ -8,6 +8,7 @@ use super::figures_of_speech::{
 };
 use super::known_view::{Known, known};
 use super::measures_view::{Measures, measures};
+use super::model_form_view::{ModelFormView, model_form};
 use super::trade_view::{Shares, Trade, shares, trade};
 use crate::descent::OutcomeQuantity;
 use crate::findings::{
@@ -28,6 +29,7 @@ pub(super) struct View {
     pub bound_label: String,
     pub probabilities: Vec<ProbabilityRow>,
     pub statements: Vec<String>,
+    pub model_form: Option<ModelFormView>,
     pub demonstration: Option<Demonstration>,
     pub rare: Vec<Rare>,
     pub margins: Vec<Margin>,
@@ -170,6 +172,7 @@ pub(super) fn view(findings: &Findings) -> View {
             .filter(|p| p.kind != EventKind::Pair)
             .filter_map(|p| p.statement.as_ref().map(|text| format!("{}: {text}.", p.title)))
             .collect(),
+        model_form: model_form(&findings.model_form),
         demonstration: demonstration(findings),
         rare: findings.rare.iter().map(rare).collect(),
         margins: findings.margins.iter().map(margin).collect(),
@@ -337,7 +340,7 @@ fn rare(finding: &RareFinding) -> Rare {
     }
 }
 
-fn quantity_of(outcome: &str) -> Quantity {
+pub(super) fn quantity_of(outcome: &str) -> Quantity {
     OutcomeQuantity::from_name(outcome).map_or(Quantity::Number, OutcomeQuantity::quantity)
 }
 

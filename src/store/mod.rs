@@ -16,5 +16,5 @@ pub use atomic::{AtomicFile, refuse_obstacle, write_bytes, write_text};
 pub use column_file::{PARQUET, read_number_column};
 pub use directory::{Contents, ResultDirectory, refuse_unfinished, verify_listed};
 pub use journal::UnfinishedTable;
-pub use outcomes_file::{OutcomesReader, OutcomesWriter, Parentage};
+pub use outcomes_file::{FIRST_SAMPLE, OutcomesReader, OutcomesWriter, Parentage};
 pub use parquet::{Field, write_table};

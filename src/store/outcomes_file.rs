@@ -7,7 +7,7 @@ use crate::descent::{Fault, OutcomeQuantity};
 use crate::error::{Error, Result};
 use crate::outcomes::OutcomeTable;
 use crate::study::Study;
-use polars::prelude::{Column, DataFrame, Float64Chunked, IntoColumn};
+use polars::prelude::{Column, DataFrame, Float64Chunked, IntoColumn, Schema};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -19,6 +19,8 @@ const SAMPLE: &str = "sample";
 const DEPLOYED: &str = "deployed";
 /// Column of the fault's name, null where there is none.
 const FAULT: &str = "fault";
+/// Footer entry of a table that does not begin with sample 0: the index of its first one.
+pub const FIRST_SAMPLE: &str = "first_sample";
 /// Prefix of this program's footer keys.
 const PREFIX: &str = "reeldown.";
 
@@ -121,9 +123,27 @@ impl OutcomesWriter {
     /// # Errors
     /// If it cannot be made.
     pub fn create(path: &Path, study: &Study, parentage: &Parentage) -> Result<Self> {
+        Self::start(path, study, parentage, TableWriter::create_durable)
+    }
+
+    /// Starts a file of which nothing is left if it is not finished, and which others may be writing as well: the
+    /// last one to finish is the one that is read.
+    ///
+    /// # Errors
+    /// If it cannot be made.
+    pub fn create_whole(path: &Path, study: &Study, parentage: &Parentage) -> Result<Self> {
+        Self::start(path, study, parentage, TableWriter::create)
+    }
+
+    fn start(
+        path: &Path,
+        study: &Study,
+        parentage: &Parentage,
+        create: impl FnOnce(&Path, &Schema, Vec<(String, String)>) -> Result<TableWriter>,
+    ) -> Result<Self> {
         let layout = Layout::new(study);
         let schema = layout.frame(&[]).map_err(|reason| unusable(path, reason))?;
-        let writer = TableWriter::create_durable(path, schema.schema(), parentage.entries())?;
+        let writer = create(path, schema.schema(), parentage.entries())?;
         Ok(OutcomesWriter { layout, writer })
     }
 
@@ -149,6 +169,7 @@ impl OutcomesWriter {
 #[derive(Debug)]
 pub struct OutcomesReader {
     path: PathBuf,
+    first: u64,
     rows: u64,
     parentage: Parentage,
     checksums: Checksums,
@@ -159,7 +180,7 @@ fn unusable(path: &Path, reason: impl std::fmt::Display) -> Error {
         path,
         "read",
         reason,
-        "expected an outcomes.parquet that `reeldown run` has written",
+        "expected a table of samples that `reeldown run` or `reeldown shard` has written",
     )
 }
 
@@ -189,8 +210,31 @@ impl OutcomesReader {
         if parentage.is_empty() {
             return Err(unusable(path, "its footer has no entry of reeldown's"));
         }
-        let (path, rows) = (path.to_owned(), file.rows());
-        Ok(OutcomesReader { path, rows, parentage: Parentage(parentage), checksums })
+        let (parentage, rows) = (Parentage(parentage), file.rows());
+        let first = parentage.0.get(FIRST_SAMPLE).map_or(Ok(0), |first| first.parse::<u64>());
+        let first = first.ok().filter(|first| first.checked_add(rows).is_some());
+        let first = first.ok_or_else(|| unusable(path, "its footer has no right first sample"))?;
+        Ok(OutcomesReader { path: path.to_owned(), first, rows, parentage, checksums })
+    }
+
+    /// Where the file is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Index of its first sample.
+    pub fn first(&self) -> u64 {
+        self.first
+    }
+
+    /// Verifies every row group.
+    ///
+    /// # Errors
+    /// If one does not match its checksum, or the file cannot be read.
+    pub fn verify(&self) -> Result<()> {
+        let mut file = File::open(&self.path).map_err(|reason| unusable(&self.path, reason))?;
+        let verified = self.checksums.verify(&mut file, 0..u64::MAX);
+        verified.map_err(|reason| unusable(&self.path, reason))
     }
 
     /// Number of samples in the file.
@@ -211,10 +255,15 @@ impl OutcomesReader {
     pub fn read(&self, study: &Study, first: u64, rows: usize) -> Result<OutcomeTable> {
         let fail = |reason: String| unusable(&self.path, reason);
         let mut file = File::open(&self.path).map_err(|reason| unusable(&self.path, reason))?;
-        self.checksums.verify(&mut file, first..first.saturating_add(rows as u64)).map_err(fail)?;
+        let skipped = first.checked_sub(self.first);
+        let none = || fail(format!("it has no {rows} samples from {first} on"));
+        let end = |skipped: u64| skipped.checked_add(rows as u64).filter(|&end| end <= self.rows);
+        let (skipped, end) =
+            skipped.and_then(|skipped| Some((skipped, end(skipped)?))).ok_or_else(none)?;
+        self.checksums.verify(&mut file, skipped..end).map_err(fail)?;
         let mut file = ParquetFile::open(file).map_err(fail)?;
-        if first.checked_add(rows as u64).is_none_or(|end| end > file.rows()) {
-            return Err(fail(format!("it has no samples {first} to {}", first + rows as u64 - 1)));
+        if end > file.rows() {
+            return Err(none());
         }
         fn cells<T: Cell>(
             file: &mut ParquetFile<File>,
@@ -229,7 +278,7 @@ impl OutcomesReader {
         let layout = Layout::new(study);
         let mut table = OutcomeTable::new(first, rows, study.inputs.len());
         let mut numbers = |name: &str, target: &mut [f64]| -> Result<()> {
-            let column = cells::<f64>(&mut file, name, first, rows).map_err(fail)?;
+            let column = cells::<f64>(&mut file, name, skipped, rows).map_err(fail)?;
             for (value, read) in target.iter_mut().zip(column) {
                 *value = read.unwrap_or(f64::NAN);
             }
@@ -241,8 +290,8 @@ impl OutcomesReader {
         for (j, quantity) in OutcomeQuantity::ALL.iter().enumerate() {
             numbers(&quantity.column(), table.outcomes.column_mut(j))?;
         }
-        let deployed = cells::<bool>(&mut file, DEPLOYED, first, rows).map_err(fail)?;
-        let faults = cells::<Arc<str>>(&mut file, FAULT, first, rows).map_err(fail)?;
+        let deployed = cells::<bool>(&mut file, DEPLOYED, skipped, rows).map_err(fail)?;
+        let faults = cells::<Arc<str>>(&mut file, FAULT, skipped, rows).map_err(fail)?;
         for (k, (deployed, fault)) in deployed.into_iter().zip(faults).enumerate() {
             table.deployed[k] = deployed.unwrap_or(false);
             table.faults[k] = match fault {

@@ -73,7 +73,7 @@ fn assemble_with(
     let sampling = requirement.and_then(|requirement| {
         mistakes.keep(sections::sampling(find("sampling"), !unlimited, requirement))
     });
-    let numerics = mistakes.keep(sections::numerics(find("numerics")));
+    let numerics = mistakes.keep(sections::numerics(find("numerics"), model.unwrap_or_default()));
     let sensitivity = mistakes.keep(sections::sensitivity(find("sensitivity")));
     let reliability = mistakes.keep(sections::reliability(find("reliability")));
     let trade = mistakes.keep(tighten::trade(find("trade")));
@@ -175,6 +175,13 @@ fn assemble_with(
     let mut notes = notes(&design, &inputs, &stated);
     notes.extend(card.together.iter().filter_map(unused));
     notes.extend(epistemic::shared_readings(&inputs));
+    if let Some(limit) = limits.iter().find(|limit| limit.implied) {
+        notes.push(format!(
+            "no upper limit on time is stated: a descent that has not deployed after {}, beyond which none is followed, \
+             counts as a breach",
+            limit.text
+        ));
+    }
     if moved > 0 {
         notes.push(format!(
             "{moved} calibrated inputs have their posterior means as nominal values: the card before them had others"

@@ -33,6 +33,7 @@ mod until;
 mod values;
 mod vocabulary;
 
+use crate::descent::outcome::TIME_LIMIT_S;
 use crate::descent::{Model, Outcome, OutcomeQuantity};
 use crate::physics::design::{Design, Target};
 use crate::sampling;
@@ -68,7 +69,8 @@ pub struct Study {
     pub correlations: Vec<Correlation>,
     /// The files from whose rows several inputs are drawn together.
     pub drawn_together: Vec<DrawnTogether>,
-    /// What a descent must not breach, in the order of [`OutcomeQuantity`], upper limit first.
+    /// What a descent must not breach, in the order of [`OutcomeQuantity`], upper limit first. Unless empty, an upper
+    /// limit on the time is among them, stated or implied.
     pub limits: Vec<Limit>,
     /// What the verdict is held against.
     pub requirement: Option<Requirement>,
@@ -207,6 +209,13 @@ impl LimitKind {
     }
 }
 
+impl Study {
+    /// Places of the limits that the study states: how far one stays from the end of what is followed is no margin.
+    pub(crate) fn stated_limits(&self) -> Vec<usize> {
+        (0..self.limits.len()).filter(|&i| !self.limits[i].implied).collect()
+    }
+}
+
 /// A limit on an outcome.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limit {
@@ -218,9 +227,33 @@ pub struct Limit {
     pub value: f64,
     /// The limit as written.
     pub text: String,
+    /// Whether the study does not state it: a line that does not run out is a breach whatever else is limited.
+    pub implied: bool,
 }
 
+/// Share of the time limit of a descent that is left below it, so that a descent that was stopped there breaches:
+/// far below what the integrators resolve, far above the rounding of the time.
+const ROUNDING: f64 = 1e-9;
+
 impl Limit {
+    /// The limit of a study that states none on the time: the line runs out while a descent is followed.
+    pub(crate) fn deployment() -> Limit {
+        Limit {
+            outcome: OutcomeQuantity::Time,
+            kind: LimitKind::Max,
+            value: TIME_LIMIT_S * (1.0 - ROUNDING),
+            text: format!("{TIME_LIMIT_S} s"),
+            implied: true,
+        }
+    }
+
+    /// Whether a margin (SI) of this limit is that of a descent that had not deployed when it was no longer followed.
+    pub fn is_of_no_deployment(&self, margin: f64) -> bool {
+        self.outcome == OutcomeQuantity::Time
+            && self.kind == LimitKind::Max
+            && self.value - margin >= TIME_LIMIT_S * (1.0 - 0.5 * ROUNDING)
+    }
+
     /// The margin of an outcome's value, SI: negative is a breach. `max − value` or `value − min`.
     pub fn margin_of(&self, value: f64) -> f64 {
         match self.kind {
@@ -231,8 +264,8 @@ impl Limit {
 
     /// The margin of a descent, SI: negative is a breach.
     ///
-    /// A descent that did not deploy carries the time limit of a descent as its time, and an upper
-    /// limit on time lies below that: it is breached.
+    /// A descent that did not deploy carries the time limit of a descent as its time, and an upper limit on time lies
+    /// below that: it is breached. A study that limits anything limits the time from above ([`Limit::implied`]).
     pub fn margin(&self, outcome: &Outcome) -> f64 {
         self.margin_of(outcome.get(self.outcome))
     }

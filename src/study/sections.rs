@@ -9,9 +9,9 @@ use super::vocabulary as keys;
 use super::{
     Limit, LimitKind, Numerics, ReliabilityPlan, Requirement, SamplingPlan, SensitivityPlan, Stated,
 };
-use crate::descent::OutcomeQuantity;
 use crate::descent::outcome::TIME_LIMIT_S;
 use crate::descent::vector::{TOLERANCES, default_tolerance};
+use crate::descent::{Model, OutcomeQuantity};
 use crate::error::Result;
 use crate::physics::design::{Design, Target};
 use crate::physics::parameters::{PARAMETERS, Parameter};
@@ -184,6 +184,11 @@ pub(super) fn limits(node: &Node) -> Result<Vec<Limit>> {
     let entries = read::table(node, &format!("time = {example}"))?;
     let limits = all(entries.iter().map(|(key, value)| limit(key, value, example)))?;
     let mut limits: Vec<Limit> = limits.into_iter().flatten().collect();
+    let upper_on_time =
+        |limit: &Limit| limit.outcome == OutcomeQuantity::Time && limit.kind == LimitKind::Max;
+    if !limits.is_empty() && !limits.iter().any(upper_on_time) {
+        limits.push(Limit::deployment());
+    }
     limits.sort_by_key(|limit| (limit.outcome, limit.kind));
     Ok(limits)
 }
@@ -203,7 +208,7 @@ fn limit(key: &Key, value: &Node, example: &str) -> Result<Vec<Limit>> {
         if let Some(node) = section.get(kind.name()) {
             let value = limit_value(outcome, kind, node)?;
             *side = Some((value, node));
-            limits.push(Limit { outcome, kind, value, text: written(node) });
+            limits.push(Limit { outcome, kind, value, text: written(node), implied: false });
         }
     }
     match sides {
@@ -315,8 +320,8 @@ pub(super) fn sampling(
 }
 
 /// `[numerics]`.
-pub(super) fn numerics(node: Option<&Node>) -> Result<Numerics> {
-    let mut numerics = Numerics { tolerance: default_tolerance() };
+pub(super) fn numerics(node: Option<&Node>, model: Model) -> Result<Numerics> {
+    let mut numerics = Numerics { tolerance: default_tolerance(model) };
     let Some(node) = node else { return Ok(numerics) };
     let entries = read::table(node, "{ tolerance = 1e-6 }")?;
     let section = Section::new("[numerics]", &node.place, entries, keys::NUMERICS)?;

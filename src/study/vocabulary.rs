@@ -65,8 +65,10 @@ pub(super) static UNTIL: &[KeyInfo] = &[
 ];
 
 /// Keys of `[numerics]`.
-pub(super) static NUMERICS: &[KeyInfo] =
-    &[key("tolerance", "relative error asked of the outcomes of a descent")];
+pub(super) static NUMERICS: &[KeyInfo] = &[key(
+    "tolerance",
+    "relative error asked of the outcomes of a descent; 1e-6, of the detailed models 1e-4, unless stated",
+)];
 
 /// Keys of `[sensitivity]`.
 pub(super) static SENSITIVITY: &[KeyInfo] = &[

@@ -22,7 +22,11 @@ const SHARED_FLOORS: [usize; 2] = [0, 8];
 const HOMES: [(&str, &[&str], &[&str]); 6] = [
     ("polars", &["polars"], &["store"]),
     ("rayon", &["rayon"], &["campaign"]),
-    ("the command line", &["clap", "clap_complete", "clap_mangen", "indicatif", "ctrlc"], &["cli"]),
+    (
+        "the command line",
+        &["clap", "clap_complete", "clap_mangen", "indicatif", "ctrlc", "signal_hook"],
+        &["cli"],
+    ),
     (
         "printing",
         &["println", "print", "eprintln", "eprint", "dbg", "stdout", "stderr"],

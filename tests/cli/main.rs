@@ -21,6 +21,7 @@ mod published;
 mod readers;
 mod replaying;
 mod rig;
+mod shards;
 mod sweeping;
 mod tighten;
 mod together;

@@ -1,6 +1,7 @@
 //! Exit codes, and what goes to which stream.
 
 use super::program::{Answer, Place, program, reeldown};
+use serde_json::Value;
 use std::io::Read;
 use std::process::Stdio;
 
@@ -38,6 +39,80 @@ fn property_exit_codes_tell_the_verdict() {
     reeldown(&["descend", "--trace"]).ended_with(2);
     reeldown(&["run", "--threads", "0"]).ended_with(2);
     run(&place, &[&["--samples", "no"]]).ended_with(1);
+}
+
+/// The headline of a replicated design is the interval of its table, or says that there is none; never a binomial one.
+#[test]
+fn property_without_a_requirement_the_headline_is_the_interval_of_the_table() {
+    let place = Place::new("headline");
+    place.write("card.toml", include_str!("../../distributions/habe.toml"));
+    for (design, limit) in [("sobol", 210), ("latin-hypercube", 210), ("halton", 1500)] {
+        let text = format!(
+            "title = \"h\"\ncard = \"card.toml\"\n[limits]\ntime = {{ max = \"{limit} s\" }}\n\
+             [sampling]\ndesign = \"{design}\"\nsamples = 1600\nreplicates = 16\n\
+             [sensitivity]\nbase_samples = 64\n[trade]\nsamples = 500\n[epistemic]\nouter = 0\n"
+        );
+        let study = place.write(&format!("{design}.toml"), &text);
+        let findings = run(&place, &[&[&study, "--json"]]).ended_with(0).json();
+        let any = findings["probabilities"]
+            .as_array()
+            .and_then(|all| all.iter().find(|p| p["kind"] == "any").cloned())
+            .unwrap_or_default();
+        let said = findings["verdict"]["statement"].as_str().unwrap_or_default().to_owned();
+        let percent = |end: &str| any["interval"]["interval"][end].as_f64().map(|p| 100.0 * p);
+        match (percent("lower"), percent("upper")) {
+            (Some(lower), Some(upper)) => {
+                let numbers: Vec<f64> =
+                    said.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+                let close = |x: f64| numbers.iter().any(|n| (n / x - 1.0).abs() < 1e-3);
+                assert!(limit == 210 && close(lower) && close(upper), "{said} {any}");
+            }
+            _ => assert!(
+                limit == 1500 && said.contains("no interval: no replicate saw"),
+                "{said} {any}"
+            ),
+        }
+    }
+}
+
+/// Nothing is ever lowered: a fluid a thousand times too thick, with limits that say nothing of time.
+const STUCK: &str = "title = \"stuck\"\ncard = \"card.toml\"\n[design]\n\
+    \"fluid.nominal_viscosity\" = \"125000000 cSt\"\n[limits]\n\
+    peak_fluid_temperature = { max = \"450 °F\" }\nfinal_velocity = { max = \"2.5 ft/s\" }\n\
+    [requirement]\nreliability = 0.99\nconfidence = 0.90\n\
+    [sampling]\nsamples = 2000\n[sensitivity]\nbase_samples = 64\n[trade]\nsamples = 500\n";
+
+/// By the model's definition a descent that does not deploy is a breach, whatever else is limited.
+#[test]
+fn property_a_line_that_never_runs_out_is_a_breach() {
+    let place = Place::new("stuck");
+    place.write("card.toml", include_str!("../../distributions/habe.toml"));
+    let study = place.write("stuck.toml", STUCK);
+    let answer = run(&place, &[&[&study, "--json"]]).ended_with(3);
+    let findings = answer.json();
+    assert_eq!(findings["verdict"]["word"], "not_met");
+    let any =
+        |list: &Value| list.as_array().and_then(|l| l.iter().find(|p| p["kind"] == "any").cloned());
+    let any = any(&findings["probabilities"]).unwrap_or_default();
+    assert_eq!(
+        (&any["counts"]["breaches"], &any["counts"]["samples"]),
+        (&2000.into(), &2000.into())
+    );
+    assert_eq!(findings["nominal"]["breaches"], serde_json::json!(["time"]));
+    assert_eq!(findings["epistemic"]["events"][3]["mean"]["value"], 1.0);
+    // "Go" nowhere: P(any breach) is 1 at every temperature and viscosity of the chart and the map.
+    for chart in findings["known"]["charts"].as_array().into_iter().flatten() {
+        for at in chart["probability"].as_array().into_iter().flatten() {
+            assert_eq!(at["probability"], 1.0, "{chart}");
+        }
+    }
+    let note = "a descent that has not deployed after 1800 s";
+    assert!(answer.err.contains(note), "{}", answer.err);
+    let place = Place::new("stuck-sweep");
+    place.write("card.toml", include_str!("../../distributions/habe.toml"));
+    let study = place.write("stuck.toml", STUCK);
+    let over = "fluid.nominal_viscosity=1e8..1.25e8 cSt/3";
+    reeldown(&["sweep", "--over", over, "--out", &place.at("swept"), &study]).ended_with(0);
 }
 
 /// Where no sample breaches, nothing is best, nothing tightened helps, and no band is drawn.

@@ -5,6 +5,7 @@ mod breach_probability;
 mod detailed_descents;
 mod driven_runs;
 mod first_order;
+mod hard_designs;
 mod near_certainty;
 mod paper_statements;
 mod reference_descents;

@@ -196,9 +196,23 @@ fn published_problems_by_line_sampling() {
     }
 }
 
+#[test]
+fn published_lines_hold_the_shaft_that_bends_towards_the_origin() {
+    // Independent lines searched whole held RP14 in 89 of 100 seeds, scrambled ones without the wide ones in 85, both
+    // from above: lines far from the design point, which hardly any sample meets, carry much of the sum.
+    // 275 or fewer of 300 has a chance of 2e-3 at the 95.5 % measured, as many or more of 5e-4 at 85 %.
+    let benchmark = named("RP14");
+    let trials: Vec<Trial> =
+        (5000..5300).map(|seed| Trial::run(Method::LineSampling, &benchmark, seed, 1.0)).collect();
+    let row = Coverage::of(Method::LineSampling, &benchmark, &trials);
+    assert!(row.stated >= 290 && row.held + row.seeds >= row.stated + 276, "{}", row.markdown());
+    // Those that miss do so on both sides.
+    assert!((row.ratio.unwrap() - 1.0).abs() < 0.003, "{}", row.markdown());
+}
+
 /// Problems that few random directions see: many dimensions, or a small corner.
-const UNSEEN: [&str; 8] =
-    ["RP38", "RP25", "RP8", "DAMPED_15_0", "DAMPED_27_5", "UNDAMPED_0_45", "RP107", "RP63"];
+const UNSEEN: [&str; 9] =
+    ["RP38", "RP25", "RP8", "RP14", "DAMPED_15_0", "DAMPED_27_5", "UNDAMPED_0_45", "RP107", "RP63"];
 
 #[test]
 fn published_problems_by_directional_sampling() {

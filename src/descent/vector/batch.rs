@@ -60,12 +60,50 @@ impl<'a> Batch<'a> {
         self.len() == 0
     }
 
+    /// Some of the descents, to be integrated once more.
+    pub(super) fn pick(&self, places: &[usize]) -> Picked<'a> {
+        match self {
+            Batch::Coefficients(batch) => {
+                Picked::Coefficients(places.iter().map(|&place| batch[place]).collect())
+            }
+            Batch::Draws(draws) => {
+                let mut inputs = Columns::new(places.len(), draws.inputs.columns());
+                for j in 0..inputs.columns() {
+                    let all = draws.inputs.column(j);
+                    let picked = inputs.column_mut(j).iter_mut().zip(places);
+                    picked.for_each(|(value, &place)| *value = all[place]);
+                }
+                Picked::Draws(*draws, inputs, vec![true; places.len()])
+            }
+        }
+    }
+
     #[inline(always)]
     pub(super) fn source<V: Lanes>(self) -> Source<'a, V> {
         match self {
             Batch::Coefficients(batch) => Source::Coefficients(batch),
             Batch::Draws(draws) => {
                 Source::Draws(draws, draws.design.map(|value| Wide(V::splat(value))))
+            }
+        }
+    }
+}
+
+/// Some descents of a batch, all of them possible.
+pub(super) enum Picked<'a> {
+    /// By their coefficients.
+    Coefficients(Vec<Coefficients<f64>>),
+    /// By draws: what they belong to, their rows, and that each is possible.
+    Draws(Draws<'a>, Columns, Vec<bool>),
+}
+
+impl Picked<'_> {
+    /// As a batch.
+    pub fn batch(&self) -> Batch<'_> {
+        match self {
+            Picked::Coefficients(some) => Batch::Coefficients(some),
+            Picked::Draws(draws, inputs, possible) => {
+                Batch::Draws(Draws { inputs, possible, ..*draws })
             }
         }
     }

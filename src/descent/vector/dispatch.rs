@@ -5,7 +5,7 @@ use super::detailed;
 use super::dynamic::Dynamic;
 use super::quasi_steady::QuasiSteady;
 use super::queue::run;
-use super::settings::{Counts, Settings};
+use super::settings::{Attempt, Counts};
 use crate::descent::model::Model;
 use crate::descent::outcome::{Fault, Outcome};
 use crate::numerics::lanes::{InstructionSet, Lanes};
@@ -14,22 +14,23 @@ use crate::numerics::lanes::{InstructionSet, Lanes};
 pub(super) fn dispatch(
     set: InstructionSet,
     model: Model,
-    settings: &Settings,
+    attempt: Attempt,
     batch: Batch,
     results: &mut [Result<Outcome, Fault>],
+    doubtful: &mut Vec<usize>,
 ) -> Counts {
     match set {
         #[cfg(target_arch = "x86_64")]
         // SAFETY: the features were detected.
         InstructionSet::Avx512 if set.is_available() => unsafe {
-            avx512(model, settings, batch, results)
+            avx512(model, attempt, batch, results, doubtful)
         },
         #[cfg(target_arch = "x86_64")]
         // SAFETY: the features were detected.
         InstructionSet::Avx2 if set.is_available() => unsafe {
-            avx2(model, settings, batch, results)
+            avx2(model, attempt, batch, results, doubtful)
         },
-        _ => with_lanes::<f64, f64>(model, settings, batch, results),
+        _ => with_lanes::<f64, f64>(model, attempt, batch, results, doubtful),
     }
 }
 
@@ -37,48 +38,51 @@ pub(super) fn dispatch(
 #[target_feature(enable = "avx512f,avx512dq,avx2,fma")]
 fn avx512(
     model: Model,
-    settings: &Settings,
+    attempt: Attempt,
     batch: Batch,
     results: &mut [Result<Outcome, Fault>],
+    doubtful: &mut Vec<usize>,
 ) -> Counts {
     use crate::numerics::lanes::{Pair, avx512::Octet};
-    with_lanes::<Pair<Octet>, Octet>(model, settings, batch, results)
+    with_lanes::<Pair<Octet>, Octet>(model, attempt, batch, results, doubtful)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 fn avx2(
     model: Model,
-    settings: &Settings,
+    attempt: Attempt,
     batch: Batch,
     results: &mut [Result<Outcome, Fault>],
+    doubtful: &mut Vec<usize>,
 ) -> Counts {
     use crate::numerics::lanes::{Pair, avx2::Quartet};
-    with_lanes::<Pair<Quartet>, Quartet>(model, settings, batch, results)
+    with_lanes::<Pair<Quartet>, Quartet>(model, attempt, batch, results, doubtful)
 }
 
 /// Runs the kernel over lanes; the detailed models over narrower ones, whose states are wide enough by themselves.
 #[inline(always)]
 fn with_lanes<V: Lanes, W: Lanes>(
     model: Model,
-    settings: &Settings,
+    attempt: Attempt,
     batch: Batch,
     results: &mut [Result<Outcome, Fault>],
+    doubtful: &mut Vec<usize>,
 ) -> Counts {
     match model {
-        Model::Dynamic => run::<V, Dynamic<V>, 7>(settings, batch, results),
-        Model::QuasiSteady => run::<V, QuasiSteady<V>, 5>(settings, batch, results),
-        Model::DetailedDynamic if settings.fine_space() => {
-            run::<W, detailed::Dynamic<W, 7, 4>, 33>(settings, batch, results)
+        Model::Dynamic => run::<V, Dynamic<V>, 7>(attempt, batch, results, doubtful),
+        Model::QuasiSteady => run::<V, QuasiSteady<V>, 5>(attempt, batch, results, doubtful),
+        Model::DetailedDynamic if attempt.fine_space => {
+            run::<W, detailed::Dynamic<W, 7, 4>, 33>(attempt, batch, results, doubtful)
         }
-        Model::DetailedQuasiSteady if settings.fine_space() => {
-            run::<W, detailed::QuasiSteady<W, 7, 4>, 31>(settings, batch, results)
+        Model::DetailedQuasiSteady if attempt.fine_space => {
+            run::<W, detailed::QuasiSteady<W, 7, 4>, 31>(attempt, batch, results, doubtful)
         }
         Model::DetailedDynamic => {
-            run::<W, detailed::Dynamic<W, 6, 3>, 23>(settings, batch, results)
+            run::<W, detailed::Dynamic<W, 6, 3>, 23>(attempt, batch, results, doubtful)
         }
         Model::DetailedQuasiSteady => {
-            run::<W, detailed::QuasiSteady<W, 6, 3>, 21>(settings, batch, results)
+            run::<W, detailed::QuasiSteady<W, 6, 3>, 21>(attempt, batch, results, doubtful)
         }
     }
 }

@@ -369,6 +369,16 @@ impl<V: Lanes> Dynamic<V> {
         )
     }
 
+    /// What an error of the pull leaves behind after the fast time constant `1/λ`, as relative changes of time and
+    /// velocity: `0.3 (v/L + ½ b y v/C1)/λ`, numerator and denominator apart (both times `θ⁻¹`), `λ` without the drag's part.
+    #[inline(always)]
+    pub fn lag(&self, m: &Moment<V>) -> (V, V) {
+        let k = &self.constants;
+        let heat = V::splat(0.15) * (m.b * (m.pull * k.inverse_fluid_capacity));
+        let lag = m.v * V::splat(0.3).mul_add(k.inverse_length, heat);
+        (lag * m.fluidity, k.torque * (m.inverse_q * m.pull_by_z))
+    }
+
     /// Derivative in time of the load less the balloon's and the spool's parts, that the brake has to balance.
     #[inline(always)]
     pub fn load_rate(&self, m: &Moment<V>) -> V {

@@ -1,13 +1,19 @@
 //! Lanes that step, each at its own pace: one descent in each.
 
 use super::clock::Clock;
+use super::leg::{LANDING, PAYING_OUT, RUNNING_LATE};
 use super::model::Model;
 use super::observables::{OBSERVABLES, Peaks};
+use super::possible::Possible;
 use super::rosenbrock;
+use super::settings::{Attempt, IMPOSSIBLE_SLACK};
 use super::start::Start;
 use crate::descent::outcome::{Fault, Outcome, TIME_LIMIT_S};
 use crate::numerics::lanes::elementary::inverse_fourth_root;
 use crate::numerics::lanes::{Lanes, Mask};
+
+/// Widest lane type: two AVX-512 registers.
+pub const WIDEST: usize = 16;
 
 /// Most step attempts of one descent: some hundred times what an ordinary one takes.
 const MOST_STEPS: f64 = 20_000.0;
@@ -29,15 +35,6 @@ const DEPLOYED: f64 = 1.0;
 const LATE: f64 = 2.0;
 const MANY: f64 = -1.0;
 const SMALL: f64 = -2.0;
-
-/// Part of a descent that a lane is in.
-pub const STARTING: f64 = 0.0;
-/// In line length, to the end of the line.
-pub const PAYING_OUT: f64 = 1.0;
-/// In time again, to the time limit, because the line would not have ended before it.
-const RUNNING_LATE: f64 = 2.0;
-/// In line length for good: the line ends, by a hair, before the limit.
-const LANDING: f64 = 3.0;
 
 /// As many descents as there are lanes.
 pub struct Group<V, M, const N: usize> {
@@ -61,12 +58,15 @@ pub struct Group<V, M, const N: usize> {
     /// Observables at the state.
     seen: [V; OBSERVABLES],
     inverse_tolerance: V,
+    /// What the descents may end in.
+    possible: [Possible<f64>; WIDEST],
+    attempt: Attempt,
 }
 
 impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
     /// Every lane at its start.
     #[inline(always)]
-    pub fn new(model: M, start: &Start<V, N>, local_tolerance: f64) -> Self {
+    pub fn new(model: M, start: &Start<V, N>, attempt: Attempt) -> Self {
         let zero = V::splat(0.0);
         Group {
             model,
@@ -77,9 +77,11 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
             fresh: zero,
             finished: zero,
             settled: start.settled,
-            peaks: Peaks::new(start.peaks),
+            peaks: Peaks::new(start.peaks, attempt.tolerance),
             seen: [zero; OBSERVABLES],
-            inverse_tolerance: V::splat(1.0 / local_tolerance),
+            inverse_tolerance: V::splat(1.0 / attempt.local_tolerance(M::KIND)),
+            possible: [Possible::ANYTHING; WIDEST],
+            attempt,
         }
     }
 
@@ -87,7 +89,14 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
     /// Until the next [`Self::look`], steps leave it where it is: one idle step of a lane costs a third of
     /// what evaluating every lane again does.
     #[inline(always)]
-    pub fn restart(&mut self, lane: usize, starts: &Start<V, N>, from: usize) {
+    pub fn restart(
+        &mut self,
+        lane: usize,
+        starts: &Start<V, N>,
+        possible: Possible<f64>,
+        from: usize,
+    ) {
+        self.possible[lane] = possible;
         for (variable, others) in self.state.iter_mut().zip(&starts.state) {
             variable.lanes_mut()[lane] = others.lanes()[from];
         }
@@ -124,7 +133,8 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
             self.model.observable_rates(&moment, &self.state, self.peaks.stiff_rate(velocity));
         // Within the initial layer a start beyond it is not the descent's own state: nothing is there to be seen.
         let real = self.settled.le(self.state[N - 1]);
-        self.peaks.arrive(real, velocity, &self.seen, &slopes);
+        let thins = self.model.thins();
+        self.peaks.arrive(real, velocity, &self.seen, &slopes, thins);
         moment
     }
 
@@ -219,24 +229,31 @@ impl<V: Lanes, M: Model<V, N>, const N: usize> Group<V, M, N> {
         )
     }
 
-    /// What became of a lane that has finished.
+    /// What became of a lane that has finished, and whether it is worth a second look: it is impossible, its peaks are
+    /// in doubt, or its points in space are too few.
     #[inline(always)]
-    pub fn result(&self, lane: usize) -> Result<Outcome, Fault> {
+    pub fn result(&self, lane: usize) -> (Result<Outcome, Fault>, bool) {
         let of = |value: &V| value.lanes()[lane];
         let how = of(&self.finished);
         let temperatures = self.model.temperatures(&self.state).each_ref().map(of);
         let (time, seen) = (of(&self.state[N - 1]), self.seen.each_ref().map(of));
         let peaks = self.peaks.values.each_ref().map(of);
         let values = outcomes(time, temperatures, how, &seen, &peaks);
-        if !values.iter().all(|value| value.is_finite()) {
-            Err(Fault::NotFinite)
-        } else if how == MANY {
-            Err(Fault::TooManySteps)
+        if how == MANY {
+            return (Err(Fault::TooManySteps), true);
+        }
+        let slack = IMPOSSIBLE_SLACK * self.attempt.tolerance;
+        let result = if self.possible[lane].admits(&values, slack) && how != SMALL {
+            Ok(Outcome { deployed: how == DEPLOYED, values })
         } else if how == SMALL {
             Err(Fault::StepTooSmall)
+        } else if values.iter().all(|value| value.is_finite()) {
+            Err(Fault::Inaccurate)
         } else {
-            Ok(Outcome { deployed: how == DEPLOYED, values })
-        }
+            Err(Fault::NotFinite)
+        };
+        let coarse = !self.attempt.fine_space && !self.possible[lane].resolves(&values);
+        (result, result.is_err() || self.peaks.doubtful(lane) || coarse)
     }
 }
 

@@ -43,7 +43,7 @@
 use super::clock::Clock;
 use super::constants::Constants;
 use super::dynamic::{Dynamic, STATES};
-use super::group::PAYING_OUT;
+use super::leg::PAYING_OUT;
 use super::observables::OBSERVABLES;
 use super::rosenbrock::System;
 use super::start::{Start, warming_step};

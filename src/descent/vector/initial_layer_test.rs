@@ -135,7 +135,7 @@ fn property_whatever_starts_beyond_the_layer_keeps_the_tolerance() {
         results
     };
     for tolerance in [1e-5, 1e-6, 1e-7] {
-        let local_tolerance = Settings { tolerance }.local_tolerance(Model::Dynamic);
+        let local_tolerance = Settings { tolerance }.attempt().local_tolerance(Model::Dynamic);
         let mut beyond = batch.clone();
         beyond.retain(|c| passed(&Constants::new(c), local_tolerance).0);
         assert!(beyond.len() > 100, "{} of them start beyond the layer", beyond.len());

@@ -45,13 +45,16 @@ mod dynamic;
 mod equations_test;
 mod group;
 mod initial_layer;
+mod leg;
 mod model;
 mod observables;
+mod possible;
 mod quasi_steady;
 mod queue;
 mod ready;
 pub mod rosenbrock;
 mod settings;
+mod settle;
 mod start;
 pub(super) mod tangents;
 mod thermal;
@@ -88,9 +91,7 @@ pub fn descend_draws(
     let count = results.len().min(Batch::Draws(draws).len());
     let draws = Draws { possible: &draws.possible[..count], ..draws };
     let results = &mut results[..count];
-    deep(|| {
-        dispatch::dispatch(InstructionSet::best(), model, settings, Batch::Draws(draws), results)
-    })
+    deep(|| settle::run(InstructionSet::best(), model, settings, Batch::Draws(draws), results))
 }
 
 /// [`descend`] with an instruction set of the caller's choice; the bits are the same with every one.
@@ -103,7 +104,7 @@ pub fn descend_with(
 ) -> Counts {
     let count = batch.len().min(results.len());
     let (batch, results) = (Batch::Coefficients(&batch[..count]), &mut results[..count]);
-    deep(|| dispatch::dispatch(set, model, settings, batch, results))
+    deep(|| settle::run(set, model, settings, batch, results))
 }
 
 /// Runs the kernel. Without optimisation its one inlined function keeps thousands of intermediate vectors

@@ -23,9 +23,10 @@ use super::initial_layer;
 use super::observables::OBSERVABLES;
 use super::quasi_steady::{self, QuasiSteady};
 use super::rosenbrock::{Step, System};
+use super::settings::Attempt;
 use super::start::{self, Start};
 use crate::descent::model::Model as Kind;
-use crate::numerics::lanes::Lanes;
+use crate::numerics::lanes::{Lanes, Mask};
 
 /// A model as the kernel's loop drives it. The first state variable is line length, the last is time.
 pub trait Model<V: Lanes, const N: usize>: System<V, N> {
@@ -39,10 +40,12 @@ pub trait Model<V: Lanes, const N: usize>: System<V, N> {
     fn clock(&self) -> &Clock<V>;
     /// Sets the lanes' clocks.
     fn set_clock(&mut self, clock: Clock<V>);
+    /// 1 where the fluid thins with shear, if it does in any lane.
+    fn thins(&self) -> Option<V>;
     /// Says whether any lane's fluid thins with shear.
     fn set_any_cross(&mut self, any: bool);
-    /// Where descents with these constants start, given the bound on a step's weighted error.
-    fn start(constants: &Constants<V>, local_tolerance: f64) -> Start<V, N>;
+    /// Where descents with these constants start.
+    fn start(constants: &Constants<V>, attempt: &Attempt) -> Start<V, N>;
     /// Relative velocity at a moment.
     fn velocity(moment: &Self::Moment) -> V;
     /// Time per clock at a moment.
@@ -101,14 +104,25 @@ impl<V: Lanes> Model<V, { dynamic::STATES }> for Dynamic<V> {
     fn set_clock(&mut self, clock: Clock<V>) {
         self.clock = clock;
     }
+    #[inline(always)]
+    fn thins(&self) -> Option<V> {
+        self.any_cross.then_some(self.constants.cross_on)
+    }
     fn set_any_cross(&mut self, any: bool) {
         self.any_cross = any;
     }
 
     #[inline(always)]
-    fn start(constants: &Constants<V>, local_tolerance: f64) -> Start<V, { dynamic::STATES }> {
-        let (fits, beyond) = initial_layer::passed(constants, local_tolerance);
-        Start::select(fits, beyond, start::at_rest(constants))
+    fn start(constants: &Constants<V>, attempt: &Attempt) -> Start<V, { dynamic::STATES }> {
+        let at_rest = start::at_rest(constants);
+        match attempt.first_step {
+            Some(share) => at_rest.with_step(share),
+            None => {
+                let tolerance = attempt.local_tolerance(Self::KIND);
+                let (fits, beyond) = initial_layer::passed(constants, tolerance);
+                Start::select(fits, beyond, at_rest)
+            }
+        }
     }
 
     #[inline(always)]
@@ -152,7 +166,14 @@ impl<V: Lanes> Model<V, { dynamic::STATES }> for Dynamic<V> {
         let total = time.mul_add(m.v, k.length - line);
         let shared = V::splat(1.0) / (total * m.load);
         let time = (e[6].abs() * m.v) * (shared * m.load);
-        let brake = V::splat(0.3).mul_add(late, V::splat(0.01)) * e[2].abs();
+        // A share of the pull's error lasts: what the way and the heat of one fast time constant make of it.
+        let mut lasting = V::splat(0.01);
+        let (lag, slow) = self.lag(m);
+        let loose = (lasting * slow).lt(lag);
+        if loose.any() {
+            lasting = V::select(loose, lag / slow, lasting).min(V::splat(1.0));
+        }
+        let brake = V::splat(0.3).mul_add(late, lasting) * e[2].abs();
         let centre = V::splat(0.3) * e[1].abs();
         let force = centre.mul_add(m.drag_share(), brake) * (shared * total);
         let heat = m.velocity_per_kelvin() * heat(late, e[3], e[4]);
@@ -180,13 +201,18 @@ impl<V: Lanes> Model<V, { quasi_steady::STATES }> for QuasiSteady<V> {
     fn set_clock(&mut self, clock: Clock<V>) {
         self.clock = clock;
     }
+    #[inline(always)]
+    fn thins(&self) -> Option<V> {
+        self.any_cross.then_some(self.constants.cross_on)
+    }
     fn set_any_cross(&mut self, any: bool) {
         self.any_cross = any;
     }
 
     #[inline(always)]
-    fn start(constants: &Constants<V>, _: f64) -> Start<V, { quasi_steady::STATES }> {
-        start::in_balance(constants)
+    fn start(constants: &Constants<V>, attempt: &Attempt) -> Start<V, { quasi_steady::STATES }> {
+        let start = start::in_balance(constants);
+        attempt.first_step.map_or(start, |share| start.with_step(share))
     }
 
     #[inline(always)]

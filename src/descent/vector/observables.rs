@@ -15,6 +15,16 @@ use crate::numerics::lanes::{Lanes, Mask};
 /// power (W), separation velocity (m/s).
 pub const OBSERVABLES: usize = 5;
 
+/// A cubic's maximum errs by about a sixth of the square of its rise above the step's ends, as shares of the peak (a
+/// smooth function over a step: the rise is its second derivative, the error its fourth). It is trusted while that is
+/// below a hundred times the tolerance.
+const TRUSTED_SQUARE: f64 = 100.0;
+/// No larger rise of the fluid's temperature is trusted, which is promised more closely than the other peaks.
+const TRUSTED_WARMING: f64 = 0.03;
+/// At release the pull of a fluid that thins with shear is no smooth function of time, it rises as a power below one:
+/// a rise of the tension's maximum above the step's ends is trusted up to this many tolerances.
+const TRUSTED_STARTING: f64 = 90.0;
+
 /// The largest values so far, and the step under way.
 #[derive(Clone, Copy)]
 pub struct Peaks<V> {
@@ -32,13 +42,19 @@ pub struct Peaks<V> {
     clock: Clock<V>,
     /// Derivative of the stiff variable in the clock at the step's end.
     stiff: V,
+    /// 1 where a peak is in doubt.
+    doubt: V,
+    /// Largest rise of an interpolated peak above the step's ends that is trusted, as a share of the peak: of any
+    /// peak, of the fluid's temperature, and of the tension while a fluid that thins with shear gets going.
+    trusted: [f64; 3],
 }
 
 impl<V: Lanes> Peaks<V> {
     /// Nothing seen yet but some largest values.
-    pub fn new(values: [V; OBSERVABLES]) -> Self {
+    pub fn new(values: [V; OBSERVABLES], tolerance: f64) -> Self {
         let zero = V::splat(0.0);
         let none = [zero; OBSERVABLES];
+        let usual = (TRUSTED_SQUARE * tolerance).sqrt();
         Peaks {
             values,
             start: none,
@@ -48,6 +64,8 @@ impl<V: Lanes> Peaks<V> {
             start_real: zero,
             clock: Clock { length: zero, time: V::splat(1.0) },
             stiff: zero,
+            doubt: zero,
+            trusted: [usual, usual.min(TRUSTED_WARMING), TRUSTED_STARTING * tolerance],
         }
     }
 
@@ -58,6 +76,13 @@ impl<V: Lanes> Peaks<V> {
             value.lanes_mut()[lane] = others.lanes()[from];
         }
         self.step.lanes_mut()[lane] = 0.0;
+        self.doubt.lanes_mut()[lane] = 0.0;
+    }
+
+    /// Whether a peak of a lane is in doubt.
+    #[inline(always)]
+    pub fn doubtful(&self, lane: usize) -> bool {
+        self.doubt.lanes()[lane] > 0.5
     }
 
     /// Notes a step: its size (0 where not accepted), its clock, the time per clock at its start, the
@@ -84,7 +109,8 @@ impl<V: Lanes> Peaks<V> {
         self.stiff * self.clock.pace(v)
     }
 
-    /// Takes in the values where the step ended, if they are real, with their derivatives in time there.
+    /// Takes in the values where the step ended, if they are real, with their derivatives in time there, given
+    /// where the fluid thins with shear if it does anywhere.
     #[inline(always)]
     pub fn arrive(
         &mut self,
@@ -92,9 +118,11 @@ impl<V: Lanes> Peaks<V> {
         v: V,
         end: &[V; OBSERVABLES],
         end_slopes: &[V; OBSERVABLES],
+        thins: Option<V>,
     ) {
         let zero = V::splat(0.0);
-        let moved = zero.lt(self.step).and(V::splat(0.5).lt(self.start_real));
+        let moved = zero.lt(self.step);
+        let known = V::splat(0.5).lt(self.start_real);
         for n in 0..OBSERVABLES {
             self.values[n] = V::select(real, end[n].max(self.values[n]), self.values[n]);
             let turned = moved.and(zero.lt(self.slopes[n])).and(end_slopes[n].lt(zero));
@@ -102,7 +130,17 @@ impl<V: Lanes> Peaks<V> {
                 let d0 = self.step * self.slopes[n] * self.start_rate;
                 let d1 = self.step * end_slopes[n] / self.clock.pace(v);
                 let top = interior(self.start[n], end[n], d0, d1);
-                self.values[n] = V::select(turned, top.max(self.values[n]), self.values[n]);
+                let seen = top.max(self.values[n]);
+                self.values[n] = V::select(turned.and(known), seen, self.values[n]);
+                // A turn within a step whose start was not the descent's own is a peak that nobody has seen.
+                let mut share = V::splat(self.trusted[usize::from(n == 0)]);
+                if let (1, Some(thins)) = (n, thins) {
+                    let singular = V::splat(0.5).lt(thins * self.clock.time);
+                    share = V::select(singular, V::splat(self.trusted[2]), share);
+                }
+                let steep = (share * top).lt(top - self.start[n].max(end[n]));
+                let doubt = turned.and(steep.or(known.not()));
+                self.doubt = V::select(doubt, V::splat(1.0), self.doubt);
             }
         }
         self.start = *end;

@@ -13,15 +13,19 @@ use super::constants::Constants;
 use super::observables::OBSERVABLES;
 use super::rosenbrock::System;
 use super::thermal;
-use crate::numerics::lanes::Lanes;
 use crate::numerics::lanes::elementary::{exp, ln};
+use crate::numerics::lanes::{Lanes, Mask};
+use crate::physics::fluid::{CONVERGED, MORE_STEPS};
 
 /// Number of state variables: `l, T1, T2, T3, t`.
 pub const STATES: usize = 5;
 
-/// Newton steps that invert Cross thinning. From the larger of the two asymptotes the error in `ln x` is at
-/// most ln 2 and the iteration converges monotonically and quadratically; see the unit test.
+/// Newton steps that invert Cross thinning. From the larger of the two asymptotes the iteration converges
+/// monotonically, and unless the exponent is near one so many steps end it; see the unit test.
 const INVERSION_STEPS: usize = 6;
+
+/// Logarithm of the largest ratio of Newtonian to thinned torque that is worked with.
+const LARGEST_LOGARITHM: f64 = 600.0;
 
 /// The quasi-steady model of as many descents as there are lanes.
 pub struct QuasiSteady<V> {
@@ -202,14 +206,30 @@ impl<V: Lanes> QuasiSteady<V> {
         let per_pull = k.cross_group * p.sqrt();
         let ln_a = ln((per_pull * load).max(V::splat(1e-300)));
         let mut y = ln_a.max(ln_a / (one - m));
-        let mut growth = one;
+        let (mut growth, mut step) = (one, one);
         for _ in 0..INVERSION_STEPS {
             growth = exp(m * y);
             let residual = (y - ln_a) - ln(one + growth);
             let share = (m * growth) / (one + growth);
-            y = y - residual / (one - share);
+            step = residual / (one - share);
+            y = y - step;
         }
-        let z = load * exp(y - ln_a);
+        let converged = V::splat(CONVERGED);
+        for _ in 0..MORE_STEPS {
+            let moving = converged.lt(step.abs()).and(on);
+            if !moving.any() {
+                break;
+            }
+            let more = exp(m * y);
+            let residual = (y - ln_a) - ln(one + more);
+            let share = (m * more) / (one + more);
+            step = V::select(moving, residual / (one - share), V::splat(0.0));
+            growth = V::select(moving, more, growth);
+            y = y - step;
+        }
+        // Beyond what the exponential can serve there is no number.
+        let absurd = V::splat(LARGEST_LOGARITHM).lt(y - ln_a);
+        let z = V::select(absurd, V::splat(f64::NAN), load * exp(y - ln_a));
         let exponent = (m * growth) / (one + growth);
         // dz/dl = (da/dl − ∂y/∂l)/(∂y/∂z): with y/z = load/z and ∂y/∂l = load ½ exponent s/p.
         let shrink = load * (V::splat(0.5) * exponent) * (k.radius_slope / p);

@@ -1,27 +1,24 @@
 //! The queue: lanes are refilled as they finish, so that a slow descent does not hold its mates idle.
 
 use super::batch::Batch;
-use super::group::Group;
+use super::group::{Group, WIDEST};
 use super::model::Model;
 use super::ready::Ready;
 use super::rosenbrock::STAGES;
-use super::settings::{Counts, Settings};
+use super::settings::{Attempt, Counts};
 use crate::descent::outcome::{Fault, Outcome};
 use crate::numerics::lanes::Lanes;
 
-/// Widest lane type: two AVX-512 registers.
-const WIDEST: usize = 16;
-
-/// Integrates every descent of the batch.
+/// Integrates every descent of the batch once; the places of those worth a second look are left in `doubtful`.
 #[inline(always)]
 pub fn run<V: Lanes, M: Model<V, N>, const N: usize>(
-    settings: &Settings,
+    attempt: Attempt,
     batch: Batch,
     results: &mut [Result<Outcome, Fault>],
+    doubtful: &mut Vec<usize>,
 ) -> Counts {
     let mut counts = Counts::default();
-    let tolerance = settings.local_tolerance(M::KIND);
-    let mut ready = Ready::<V, N>::new(batch, tolerance);
+    let mut ready = Ready::<V, N>::new(batch, attempt);
     let mut group = ready.group::<M>();
     let mut sample = [0; WIDEST];
     let mut live = 0u32;
@@ -36,7 +33,11 @@ pub fn run<V: Lanes, M: Model<V, N>, const N: usize>(
             let lane = done.trailing_zeros() as usize;
             done &= done - 1;
             if live & (1 << lane) != 0 {
-                results[sample[lane]] = group.result(lane);
+                let (result, doubt) = group.result(lane);
+                results[sample[lane]] = result;
+                if doubt {
+                    doubtful.push(sample[lane]);
+                }
                 counts.attempts += group.attempts.lanes()[lane] as u64;
                 counts.descents += 1;
                 counts.evaluations += 1;

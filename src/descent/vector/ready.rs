@@ -7,6 +7,8 @@ use super::batch::{Batch, Source};
 use super::constants::Constants;
 use super::group::Group;
 use super::model::Model;
+use super::possible::Possible;
+use super::settings::Attempt;
 use super::start::Start;
 use crate::descent::outcome::{Fault, Outcome};
 use crate::numerics::lanes::{Lanes, Mask, Wide};
@@ -25,13 +27,14 @@ pub struct Ready<'a, V, const N: usize> {
     possible: u32,
     constants: Constants<V>,
     starts: Start<V, N>,
-    local_tolerance: f64,
+    bounds: Option<Possible<V>>,
+    attempt: Attempt,
 }
 
 impl<'a, V: Lanes, const N: usize> Ready<'a, V, N> {
     /// The whole batch waiting, none of it ready.
     #[inline(always)]
-    pub fn new(batch: Batch<'a>, local_tolerance: f64) -> Self {
+    pub fn new(batch: Batch<'a>, attempt: Attempt) -> Self {
         let nothing = [Wide(V::splat(0.0)); FIELD_COUNT];
         Ready {
             source: batch.source(),
@@ -43,14 +46,15 @@ impl<'a, V: Lanes, const N: usize> Ready<'a, V, N> {
             constants: Constants::new(&Coefficients::from_fields(nothing, false))
                 .map(|wide| wide.0),
             starts: Start::nowhere(),
-            local_tolerance,
+            bounds: None,
+            attempt,
         }
     }
 
     /// A group to be filled, whose lanes stand nowhere.
     #[inline(always)]
     pub fn group<M: Model<V, N>>(&self) -> Group<V, M, N> {
-        Group::new(M::new(self.constants), &self.starts, self.local_tolerance)
+        Group::new(M::new(self.constants), &self.starts, self.attempt)
     }
 
     /// Works out the next descents of the batch, which has some.
@@ -71,7 +75,8 @@ impl<'a, V: Lanes, const N: usize> Ready<'a, V, N> {
         let moving_mass = some.coefficients.balloon.moving_mass_kg.0;
         let possible = self.constants.possible_lanes(moving_mass, capacities).bits();
         self.possible = possible & !some.impossible;
-        self.starts = M::start(&self.constants, self.local_tolerance);
+        self.starts = M::start(&self.constants, &self.attempt);
+        self.bounds = Some(Possible::new(M::KIND, &self.constants));
     }
 
     /// The next possible descent: its place in the batch and its lane among the prepared. The impossible
@@ -101,6 +106,7 @@ impl<'a, V: Lanes, const N: usize> Ready<'a, V, N> {
     #[inline(always)]
     pub fn load<M: Model<V, N>>(&self, from: usize, group: &mut Group<V, M, N>, to: usize) {
         group.model.constants().copy_lane(to, &self.constants, from);
-        group.restart(to, &self.starts, from);
+        let possible = self.bounds.map_or(Possible::ANYTHING, |bounds| bounds.lane(from));
+        group.restart(to, &self.starts, possible, from);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::constants::Constants;
 use super::dynamic;
-use super::group::{PAYING_OUT, STARTING};
+use super::leg::{PAYING_OUT, STARTING};
 use super::observables::OBSERVABLES;
 use super::quasi_steady;
 use crate::numerics::lanes::elementary::exp;
@@ -35,6 +35,13 @@ impl<V: Lanes, const N: usize> Start<V, N> {
     #[inline(always)]
     pub fn nowhere() -> Self {
         Self::first([V::splat(0.0); N], STARTING, V::splat(0.0))
+    }
+
+    /// The same with a share of the first step.
+    #[inline(always)]
+    pub fn with_step(mut self, share: f64) -> Self {
+        self.step = self.step * V::splat(share);
+        self
     }
 
     /// `this` where the mask is true, `other` elsewhere.

@@ -64,7 +64,7 @@ pub struct Exceedance {
 
 /// The distribution of every limited outcome that has a computed sample.
 pub(super) fn distributions(study: &Study, record: &Record) -> Result<Vec<Distribution>> {
-    let limits: Vec<usize> = (0..study.limits.len()).collect();
+    let limits = study.stated_limits();
     let all = in_parallel(&limits, |&i| distribution(study, record, i));
     Ok(all.into_iter().collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
 }

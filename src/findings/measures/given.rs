@@ -8,6 +8,7 @@ use crate::campaign::in_parallel;
 use crate::descent::OutcomeQuantity;
 use crate::error::Result;
 use crate::findings::CONFIDENCE;
+use crate::findings::probabilities::breach_of;
 use crate::sensitivity::borgonovo::borgonovo_delta;
 use crate::sensitivity::given_data::GivenData;
 use crate::sensitivity::hsic::hsic;
@@ -98,11 +99,7 @@ impl Output {
             Output::Outcome(q) => (q.name().to_owned(), q.title().to_owned(), false),
             Output::Breach(_, Event::Limit(i)) => {
                 let limit = &study.limits[i];
-                (
-                    format!("breach.{}", limit.name()),
-                    format!("breach of {}", limit.outcome.title()),
-                    true,
-                )
+                (format!("breach.{}", limit.name()), breach_of(limit), true)
             }
             Output::Breach(_, Event::Any) => {
                 ("breach.any".into(), "breach of any limit".into(), true)

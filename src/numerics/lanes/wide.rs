@@ -1,6 +1,6 @@
 //! Lanes as numbers of the equations: what is written over [`Real`] runs on several samples at once.
 
-use super::{Lanes, elementary};
+use super::{Lanes, Mask, elementary};
 use crate::numerics::real::Real;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -71,6 +71,15 @@ impl<V: Lanes> Real for Wide<V> {
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         Wide(self.0.min(other.0))
+    }
+    #[inline(always)]
+    fn beyond(self, bound: f64) -> Self {
+        let small = self.0.abs().le(V::splat(bound));
+        Wide(V::select(small, V::splat(0.0), self.0))
+    }
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        !V::splat(0.0).lt(self.0.abs()).any()
     }
 }
 

@@ -78,7 +78,8 @@ fn outcome(
         .collect();
     let heights = || {
         let quantiles = bands.iter().flat_map(|(_, q)| [q[0], q[2]]);
-        nominal.iter().map(|p| p.1).chain(quantiles).chain([unit.shown(limit.value)])
+        let stated = (!limit.implied).then(|| unit.shown(limit.value));
+        nominal.iter().map(|p| p.1).chain(quantiles).chain(stated)
     };
     let low = heights().fold(f64::INFINITY, f64::min);
     let high = heights().fold(f64::NEG_INFINITY, f64::max);
@@ -98,7 +99,9 @@ fn outcome(
     let median: Vec<(f64, f64)> = bands.iter().map(|(x, q)| (*x, q[1])).collect();
     chart.line(&median, BLUE, 3.0, false);
     chart.line(&nominal, INK, 1.6, false);
-    chart.horizontal_limit(unit.shown(limit.value), &format!("limit {}", limit.text));
+    if !limit.implied {
+        chart.horizontal_limit(unit.shown(limit.value), &format!("limit {}", limit.text));
+    }
     mark_present(&mut chart, path, xs);
     let title = format!("{} against {}", capital(limit.quantity.title()), path.path);
     let mut caption = "The nominal descent at each value".to_owned();
@@ -110,10 +113,11 @@ fn outcome(
     }
     let (first, last) = (nominal.first()?, nominal.last()?);
     let alternative = format!(
-        "The nominal {} goes from {:.4} {s} at the left end to {:.4} {s} at the right end; the limit is {}.",
+        "The nominal {} goes from {:.4} {s} at the left end to {:.4} {s} at the right end; {}{}.",
         limit.quantity.title(),
         first.1,
         last.1,
+        if limit.implied { "not deployed after " } else { "the limit is " },
         limit.text,
         s = unit.symbol,
     );

@@ -45,7 +45,8 @@ pub fn answer(method: Method, benchmark: &Benchmark, seed: u64, effort: f64) -> 
             subset_simulation(state, event, &options)
         }
         Method::LineSampling => {
-            let options = LineOptions { seed, search, lines: share(2e3), ..Default::default() };
+            let options =
+                LineOptions { seed, search, lines: share(32.0).max(8), ..Default::default() };
             line_sampling(state, event, &options)
         }
         Method::DirectionalSampling => {

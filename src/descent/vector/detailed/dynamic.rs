@@ -5,10 +5,11 @@ use super::linear::Factored;
 use crate::descent::model::Model as Kind;
 use crate::descent::vector::clock::Clock;
 use crate::descent::vector::constants::Constants;
-use crate::descent::vector::group::STARTING;
+use crate::descent::vector::leg::STARTING;
 use crate::descent::vector::model::{Model, nearness};
 use crate::descent::vector::observables::OBSERVABLES;
 use crate::descent::vector::rosenbrock::{Step, System};
+use crate::descent::vector::settings::Attempt;
 use crate::descent::vector::start::{Start, at_rest};
 use crate::numerics::lanes::Lanes;
 
@@ -153,6 +154,10 @@ where
     fn set_clock(&mut self, clock: Clock<V>) {
         self.0.clock = clock;
     }
+    #[inline(always)]
+    fn thins(&self) -> Option<V> {
+        self.0.any_cross.then_some(self.0.constants.cross_on)
+    }
     fn set_any_cross(&mut self, any: bool) {
         self.0.any_cross = any;
     }
@@ -178,7 +183,7 @@ where
 
     /// At rest on the line, both bodies rising, as the three-node model starts.
     #[inline(always)]
-    fn start(k: &Constants<V>, _: f64) -> Start<V, N> {
+    fn start(k: &Constants<V>, attempt: &Attempt) -> Start<V, N> {
         let rest = at_rest(k);
         let mut state = [k.initial_temperature; N];
         state[0] = V::splat(0.0);
@@ -188,7 +193,7 @@ where
         Start {
             state,
             leg: V::splat(STARTING),
-            step: rest.step,
+            step: rest.step * V::splat(attempt.first_step.unwrap_or(1.0)),
             peaks: rest.peaks,
             settled: rest.settled,
         }

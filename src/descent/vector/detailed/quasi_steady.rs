@@ -5,10 +5,11 @@ use super::linear::Factored;
 use crate::descent::model::Model as Kind;
 use crate::descent::vector::clock::Clock;
 use crate::descent::vector::constants::Constants;
-use crate::descent::vector::group::PAYING_OUT;
+use crate::descent::vector::leg::PAYING_OUT;
 use crate::descent::vector::model::{Model, nearness};
 use crate::descent::vector::observables::OBSERVABLES;
 use crate::descent::vector::rosenbrock::{Step, System};
+use crate::descent::vector::settings::Attempt;
 use crate::descent::vector::start::{Start, warming_step};
 use crate::numerics::lanes::elementary::exp;
 use crate::numerics::lanes::{Lanes, Wide};
@@ -117,6 +118,10 @@ where
     fn set_clock(&mut self, clock: Clock<V>) {
         self.0.clock = clock;
     }
+    #[inline(always)]
+    fn thins(&self) -> Option<V> {
+        self.0.any_cross.then_some(self.0.constants.cross_on)
+    }
     fn set_any_cross(&mut self, any: bool) {
         self.0.any_cross = any;
     }
@@ -141,14 +146,14 @@ where
     }
 
     #[inline(always)]
-    fn start(k: &Constants<V>, _: f64) -> Start<V, N> {
+    fn start(k: &Constants<V>, attempt: &Attempt) -> Start<V, N> {
         let mut state = [k.initial_temperature; N];
         state[0] = V::splat(0.0);
         state[N - 1] = V::splat(0.0);
         let fluidity = exp(k.minus_viscosity_temperature / k.initial_temperature);
         let velocity = k.full_radius_squared * k.weight * (k.inverse_torque * fluidity);
         let peaks = [V::splat(f64::NEG_INFINITY); OBSERVABLES];
-        let step = warming_step(k, velocity);
+        let step = warming_step(k, velocity) * V::splat(attempt.first_step.unwrap_or(1.0));
         Start { state, leg: V::splat(PAYING_OUT), step, peaks, settled: V::splat(0.0) }
     }
 
