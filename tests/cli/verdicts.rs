@@ -124,7 +124,7 @@ fn property_what_no_sample_shows_is_not_told() {
     for wanted in [
         "the best fluid.nominal_viscosity is not resolved: over a part of its range none of",
         "No halved spread is shown to lower P(any breach).",
-        "cannot be told: it happened with 0 of",
+        "No credible interval for this brake: it happened with 0 of",
         "MET: P(any breach) 0 (0 … ",
     ] {
         assert!(words.contains(wanted), "{wanted}: {out}");
