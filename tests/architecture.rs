@@ -58,7 +58,6 @@ mod architecture {
             "descent/vector/start",
         ],
         &["findings/compare", "findings/compare_findings", "findings/compare_studies"],
-        &["findings/demonstration", "findings/sequence"],
         &["findings/derivatives", "findings/design_value", "findings/trade"],
         &["findings/rare", "findings/story"],
         &["findings/sweep", "findings/sweep_best"],

@@ -1,5 +1,6 @@
 //! The verdict: is the requirement demonstrated?
 
+use super::percent::percent;
 use super::probabilities::{EventKind, ProbabilityFinding};
 use super::sequence;
 use crate::campaign::Record;
@@ -9,7 +10,6 @@ use crate::reliability::demonstration::{Demonstration, Requirement, Verdict, min
 use crate::reliability::probability::Proportion;
 use crate::reliability::replicates::from_replicate_counts;
 use crate::study::{StoppingPlan, Study};
-use crate::units::number;
 use serde::Serialize;
 
 /// How many rows the failures-allowed table has: 0 to 3 failures.
@@ -63,14 +63,6 @@ pub struct VerdictFinding {
     pub decision: Option<Decision>,
     /// Clean samples and failures that would demonstrate the requirement: (failures, samples).
     pub failures_allowed: Vec<(u64, u64)>,
-}
-
-/// A probability or share as a person reads it.
-pub(super) fn percent(share: f64) -> String {
-    if share > 0.0 && share < 1e-5 {
-        return format!("{share:.2e}");
-    }
-    format!("{} %", number(100.0 * share, 4))
 }
 
 /// The verdict of a study's samples.

@@ -19,6 +19,7 @@ pub mod measures;
 mod model_form;
 mod numerical;
 pub mod paper;
+mod percent;
 mod probabilities;
 mod rare;
 pub mod rig;

@@ -1,6 +1,7 @@
 //! What the integrator's own error could have done to the probabilities and to the verdict, as measured.
 
-use super::demonstration::{VerdictFinding, VerdictWord, percent};
+use super::demonstration::{VerdictFinding, VerdictWord};
+use super::percent::percent;
 use crate::campaign::{Record, Verification};
 use crate::error::Result;
 use crate::reliability::demonstration::{Requirement, Verdict};

@@ -1,7 +1,7 @@
 //! How probable each breach is, and how sure that is.
 
 use super::CONFIDENCE;
-use super::demonstration::percent;
+use super::percent::percent;
 use super::sequence;
 use crate::campaign::Record;
 use crate::error::Result;

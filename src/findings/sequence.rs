@@ -1,6 +1,6 @@
 //! What may be said when sampling ended because of what was seen: intervals that hold at every look.
 
-use super::demonstration::percent;
+use super::percent::percent;
 use crate::error::Result;
 use crate::numerics::interval::{Earned, Interval};
 use crate::reliability::adaptive::{AdaptiveMonteCarlo, Stop, Until};

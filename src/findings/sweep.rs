@@ -1,8 +1,8 @@
 //! The design space of a study: outcomes, margins and probabilities over a grid, and what is best in it.
 
 use super::CONFIDENCE;
-use super::demonstration::percent;
 use super::known::{GoAnswer, answer, stated};
+use super::percent::percent;
 use super::sweep_best::{BestFinding, best, choice, lines, searched};
 use super::trade::proportion;
 use crate::campaign::sweep::{Cell, Grid, Meaning, confirm, confirming_samples};

@@ -201,7 +201,7 @@ pub fn tighten(study: &Study, found: &Tightening, command: String) -> Result<Tig
 
 fn proof_of(found: &Tightening, proof: &Proof) -> ProofFinding {
     let cost = found.confirmation.plan.cost;
-    let percent = super::demonstration::percent;
+    let percent = super::percent::percent;
     let refuted = match (proof.refuted, found.settings) {
         (0, _) => "There is none that costs less".to_owned(),
         (plans, 1) => format!("{plans} plans that cost less were refuted one by one"),
@@ -276,7 +276,7 @@ fn plan_of(study: &Study, found: &Tightening, allocation: &Allocation) -> PlanFi
 }
 
 fn statement(finding: &TightenFinding) -> String {
-    let percent = super::demonstration::percent;
+    let percent = super::percent::percent;
     let demonstration = &finding.demonstration;
     let counts = &demonstration.counts;
     let target = percent(finding.target);
@@ -310,7 +310,7 @@ fn statement(finding: &TightenFinding) -> String {
 }
 
 fn residual_words(residual: &ResidualFinding) -> String {
-    let percent = super::demonstration::percent;
+    let percent = super::percent::percent;
     let worst = residual.limits.iter().max_by(|a, b| {
         let value = |e: &Estimate| e.value.unwrap_or(0.0);
         value(&a.1).total_cmp(&value(&b.1))

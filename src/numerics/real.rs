@@ -35,6 +35,10 @@ pub trait Real:
     fn is_zero(self) -> bool;
 }
 
+/// A Newton step for a logarithm that is no longer than this leaves an error below a rounding: it converges
+/// quadratically, with a constant below one.
+pub const CONVERGED: f64 = 1e-8;
+
 impl Real for f64 {
     fn constant(value: f64) -> Self {
         value

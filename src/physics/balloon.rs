@@ -1,7 +1,6 @@
 //! The tow balloon: buoyancy, drag, and the air that moves with it.
 
 use super::GRAVITY;
-use super::design::Design;
 use super::parameters::Parameter;
 use crate::numerics::real::Real;
 
@@ -19,10 +18,9 @@ pub struct Balloon<R> {
 }
 
 impl<R: Real> Balloon<R> {
-    /// The tow balloon of a design, carrying the whole payload before release.
+    /// The tow balloon of a design's values, carrying the whole payload before release.
     #[inline(always)]
-    pub fn new(design: &Design<R>) -> Self {
-        let get = |parameter| design.get(parameter);
+    pub fn new(get: impl Fn(Parameter) -> R) -> Self {
         let own_weight = get(Parameter::BalloonMass) * R::constant(GRAVITY);
         let weight = own_weight + get(Parameter::PayloadWeight);
         let free_lift = get(Parameter::BalloonFreeLift) * weight;

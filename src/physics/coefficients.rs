@@ -40,7 +40,7 @@ impl<R: Real> Coefficients<R> {
             fluid: Fluid::new(design, &brake, shear_thinning),
             thermal: Thermal::new(design),
             payload: Payload::new(design),
-            balloon: Balloon::new(design),
+            balloon: Balloon::new(|parameter| design.get(parameter)),
             film: Film::new(design),
             initial_temperature_k: design.get(Parameter::InitialTemperature),
         }

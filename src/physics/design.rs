@@ -161,7 +161,7 @@ impl Design<f64> {
 
     /// How fast the balloon rises before release, m/s.
     fn rise_speed_m_per_s(&self) -> f64 {
-        Balloon::new(self).rise_speed_m_per_s
+        Balloon::new(|parameter| self.get(parameter)).rise_speed_m_per_s
     }
 
     /// Checks that every value is possible and that the values fit each other.

@@ -32,11 +32,11 @@
 )]
 
 use super::design::Design;
-use super::fluid::{CONVERGED, MORE_STEPS};
+use super::fluid::MORE_STEPS;
 use super::parameters::Parameter;
 use super::space::{DENSITY_TEMPERATURE_K, PI, SMALLEST_BORE, Space};
 use super::thermal::Thermal;
-use crate::numerics::real::Real;
+use crate::numerics::real::{CONVERGED, Real};
 use std::array::from_fn;
 
 /// The film and the metal of one design.

@@ -3,7 +3,7 @@
 use super::brake::Brake;
 use super::design::Design;
 use super::parameters::Parameter;
-use crate::numerics::real::Real;
+use crate::numerics::real::{CONVERGED, Real};
 
 /// Fluid constants, joined with the brake that shears it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,10 +25,6 @@ pub struct Fluid<R> {
 
 /// How many Newton steps invert the shear-thinned torque; see [`Fluid::speed_of_torque`].
 const INVERSION_STEPS: usize = 12;
-
-/// A Newton step for a logarithm that is no longer than this leaves an error below a rounding: `y` converges
-/// quadratically, with a constant below one.
-pub const CONVERGED: f64 = 1e-8;
 
 /// Newton steps beyond the usual ones, at most. Where the exponent `m` is near one, each adds about one to `y` until
 /// that is some `−ln(1 − m)`, which is at most 37 in doubles.

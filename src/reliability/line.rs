@@ -23,14 +23,15 @@
 //! variance on scrambled nets.
 
 use super::crossings::TOLERANCE;
-use super::design_point::{DesignPoint, DesignPoints, SearchOptions, design_points};
+use super::design_point::SearchOptions;
 use super::draws::open_uniform;
 use super::estimate::{Estimate, Method};
 use super::event::{BATCH, Evaluator, Event, FaultReading};
 use super::limit_state::LimitState;
+use super::line_groups::{Fit, Group, Spent, directions, slopes};
 use super::line_root::{Crossing, crossing};
 use super::searched_lines::{SearchedLineOptions, between, searched_lines, widen};
-use super::vectors::{dot, norm};
+use super::vectors::dot;
 use super::weighted::{WeightChecks, WeightedBreaches};
 use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
@@ -78,15 +79,6 @@ const WIDE_SHARE: u64 = 4;
 /// … by this factor: where lines far from the design point carry much more than those near it, plain ones would
 /// meet too few of them to know what is missing.
 const WIDE: f64 = 2.0;
-/// Limits less probable than this share of the most probable one get no lines of their own.
-const NEGLIGIBLE_SHARE: f64 = 1e-4;
-/// From this first-order probability up lines across a second design point would be met by chance; below it
-/// second design points are searched.
-const COMMON: f64 = 0.02;
-/// Design points farther than the nearest by no more than this share its probability.
-const RIVAL: f64 = 1.5;
-/// Cosine of the angle within which two limits share their lines, at either end.
-const PARALLEL: f64 = 0.8;
 /// A crossing may leave this share of the first-order probability open.
 const OPEN_SHARE: f64 = 1e-4;
 /// Rounds of evaluations that a crossing may take.
@@ -140,13 +132,6 @@ pub fn line_sampling(
     }
 }
 
-/// What was evaluated.
-#[derive(Default)]
-struct Spent {
-    evaluations: u64,
-    faults: u64,
-}
-
 /// How the lines of a group lie across its direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Spread {
@@ -181,22 +166,6 @@ impl Spread {
     }
 }
 
-/// Lines along one direction.
-#[derive(Clone)]
-struct Group {
-    direction: Vec<f64>,
-    /// Where crossings are expected.
-    distance: f64,
-    /// Places among the event's members of the limits that these lines answer for …
-    own: Vec<usize>,
-    /// … and of those whose breaches earlier groups have counted.
-    counted: Vec<usize>,
-    /// Slope of each member's margin along the direction, where it is known.
-    slopes: Vec<Option<f64>>,
-}
-
-type Fit<T> = std::result::Result<T, String>;
-
 fn scrambled(
     state: &dyn LimitState,
     event: Event,
@@ -207,7 +176,7 @@ fn scrambled(
     if state.dimension() > Design::Sobol.max_dimension() {
         return Ok(Err("there are more coordinates than Sobol' numbers".to_owned()));
     }
-    let mut found = match directions(state, event, &members, options, spent)? {
+    let mut found = match directions(state, event, &members, &options.search, spent)? {
         Ok(found) => found,
         Err(why) => return Ok(Err(why)),
     };
@@ -248,112 +217,6 @@ fn scrambled(
         }
         Err((why, _)) => Err(why),
     })
-}
-
-/// Half the distance over which slopes along a line are taken.
-const SLOPE_STEP: f64 = 0.25;
-
-/// Slopes of the members' margins along the line through the origin, where its crossing is expected.
-fn slopes(evaluator: &mut Evaluator, group: &Group, members: &[usize]) -> Result<Vec<Option<f64>>> {
-    let rows = [SLOPE_STEP, -SLOPE_STEP].map(|step| -> Vec<f64> {
-        group.direction.iter().map(|x| (group.distance + step) * x).collect()
-    });
-    let margins = evaluator.margins(&Columns::from_rows(&rows))?;
-    let slope = |&limit: &usize| {
-        let slope = (margins.get(0, limit) - margins.get(1, limit)) / (2.0 * SLOPE_STEP);
-        (slope.is_finite() && slope != 0.0).then_some(slope)
-    };
-    Ok(members.iter().map(slope).collect())
-}
-
-/// The groups of lines of an event.
-fn directions(
-    state: &dyn LimitState,
-    event: Event,
-    members: &[usize],
-    options: &LineOptions,
-    spent: &mut Spent,
-) -> Result<Fit<Vec<Group>>> {
-    let rough = SearchOptions {
-        directions: 0,
-        iterations: 12,
-        distance_tolerance: 0.02,
-        angle_tolerance: 0.05,
-        ..options.search.clone()
-    };
-    let mut search = |event: Event, options: &SearchOptions| -> Result<DesignPoints> {
-        let found = design_points(state, event, options)?;
-        spent.evaluations += found.evaluations;
-        spent.faults += found.faults;
-        Ok(found)
-    };
-    let around =
-        SearchOptions { directions: options.search.directions.min(8), ..options.search.clone() };
-    let several = |found: &DesignPoints| {
-        let nearest = found.points.first().map_or(f64::INFINITY, |p| p.reliability_index);
-        found.points.iter().filter(|p| p.reliability_index < nearest + RIVAL).count() > 1
-    };
-    if members.len() > 1 && !event.is_union() {
-        let found = search(event, &around)?;
-        return Ok(match &found.points[..] {
-            [] => Err("the common breach has no design point".to_owned()),
-            _ if several(&found) => Err("there are several design points".to_owned()),
-            [point, ..] => Ok(vec![joint_group(point, members.len())]),
-        });
-    }
-    let mut points: Vec<(usize, DesignPoint)> = Vec::new();
-    for (place, &limit) in members.iter().enumerate() {
-        if let Some(point) = search(Event::Limit(limit), &rough)?.points.into_iter().next() {
-            points.push((place, point));
-        }
-    }
-    points.sort_by(|a, b| a.1.reliability_index.total_cmp(&b.1.reliability_index));
-    let Some(most) = points.first().map(|(_, p)| normal::survival(p.reliability_index)) else {
-        return Ok(Err("no limit has a design point".to_owned()));
-    };
-    points.retain(|(_, p)| normal::survival(p.reliability_index) >= NEGLIGIBLE_SHARE * most);
-    let mut groups: Vec<Group> = Vec::new();
-    for (place, point) in &points {
-        let rare = normal::survival(point.reliability_index) < COMMON;
-        if rare && several(&search(Event::Limit(members[*place]), &around)?) {
-            return Ok(Err("a limit has several design points".to_owned()));
-        }
-        let Some(half) = point.half_spaces.first() else { continue };
-        let along = |group: &&mut Group| dot(&group.direction, &half.direction).abs() > PARALLEL;
-        match groups.iter_mut().find(along) {
-            Some(group) => group.own.push(*place),
-            None => groups.push(Group {
-                direction: half.direction.clone(),
-                distance: half.reliability_index,
-                own: vec![*place],
-                counted: Vec::new(),
-                slopes: vec![None; members.len()],
-            }),
-        }
-    }
-    let mut before: Vec<usize> = Vec::new();
-    for (k, group) in groups.iter_mut().enumerate() {
-        if k == 0 {
-            // Limits without a direction of their own are looked for on the first lines.
-            let rest = (0..members.len()).filter(|m| points.iter().all(|(place, _)| place != m));
-            group.own.extend(rest);
-        }
-        group.counted.clone_from(&before);
-        before.extend(&group.own);
-    }
-    Ok(Ok(groups))
-}
-
-/// The lines of an intersection: along its joint design point.
-fn joint_group(point: &DesignPoint, members: usize) -> Group {
-    let length = norm(&point.point).max(1e-9);
-    Group {
-        direction: point.point.iter().map(|x| x / length).collect(),
-        distance: length,
-        own: (0..members).collect(),
-        counted: Vec::new(),
-        slopes: vec![None; members],
-    }
 }
 
 /// The lines of one group.

@@ -35,6 +35,7 @@ pub mod form;
 pub mod importance;
 pub mod limit_state;
 pub mod line;
+mod line_groups;
 mod line_root;
 pub mod linearisation;
 pub mod log_replicates;

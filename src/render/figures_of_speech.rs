@@ -1,5 +1,6 @@
 //! Numbers as a reader wants them: shares in per cent, values in the paper's units.
 
+use crate::descent::OutcomeQuantity;
 use crate::numerics::interval::Earned;
 use crate::units::Quantity;
 use crate::units::{display, number};
@@ -35,6 +36,11 @@ pub(super) fn probability_interval(interval: &Earned) -> String {
 /// The upper end of an interval of a probability.
 pub(super) fn upper_end(interval: &Earned) -> String {
     interval.interval().map_or("none".to_owned(), |i| probability(i.upper))
+}
+
+/// The quantity of an outcome by its name in study files.
+pub(super) fn quantity_of(outcome: &str) -> Quantity {
+    OutcomeQuantity::from_name(outcome).map_or(Quantity::Number, OutcomeQuantity::quantity)
 }
 
 /// A value in the paper's unit, without the unit.

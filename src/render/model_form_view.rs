@@ -1,8 +1,7 @@
 //! The form of the thermal model in words.
 
-use super::figures_of_speech::{count, probability, probability_interval, value};
+use super::figures_of_speech::{count, probability, probability_interval, quantity_of, value};
 use super::trade_view::points;
-use super::view::quantity_of;
 use crate::descent::OutcomeQuantity;
 use crate::findings::{FormFinding, ModelFormFinding, VerdictWord};
 use serde::Serialize;

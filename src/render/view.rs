@@ -4,7 +4,8 @@ use super::calibrated_view::{Calibrated, calibrated};
 use super::driver_view::{Drivers, drivers, ranked};
 use super::epistemic_view::{Epistemic, epistemic};
 use super::figures_of_speech::{
-    bare, count, maybe, probability, probability_interval, upper_end, value, value_interval,
+    bare, count, maybe, probability, probability_interval, quantity_of, upper_end, value,
+    value_interval,
 };
 use super::known_view::{Known, known};
 use super::measures_view::{Measures, measures};
@@ -14,7 +15,7 @@ use crate::descent::OutcomeQuantity;
 use crate::findings::{
     CONFIDENCE, Decision, EventKind, Findings, MarginFinding, RareFinding, VerdictWord,
 };
-use crate::units::{Quantity, number};
+use crate::units::number;
 use serde::Serialize;
 
 /// A report, ready to be laid out.
@@ -338,10 +339,6 @@ fn rare(finding: &RareFinding) -> Rare {
         agreement: finding.agreement_statement.clone(),
         story: finding.design_point.as_ref().map(|point| point.statement.clone()),
     }
-}
-
-pub(super) fn quantity_of(outcome: &str) -> Quantity {
-    OutcomeQuantity::from_name(outcome).map_or(Quantity::Number, OutcomeQuantity::quantity)
 }
 
 fn margin(finding: &MarginFinding) -> Margin {

@@ -15,7 +15,8 @@ use super::rosenbrock::System;
 use super::thermal;
 use crate::numerics::lanes::elementary::{exp, ln};
 use crate::numerics::lanes::{Lanes, Mask};
-use crate::physics::fluid::{CONVERGED, MORE_STEPS};
+use crate::numerics::real::CONVERGED;
+use crate::physics::fluid::MORE_STEPS;
 
 /// Number of state variables: `l, T1, T2, T3, t`.
 pub const STATES: usize = 5;

@@ -3,7 +3,7 @@
 use super::{CalibrationFinding, SuspicionFinding};
 use crate::calibration::screening::Suspicion;
 use crate::campaign::calibration::Channel;
-use crate::findings::demonstration::percent;
+use crate::findings::percent::percent;
 use crate::units::{display, number};
 
 /// What a suspicion says.
