@@ -168,7 +168,8 @@ fn regression_steps_and_evaluations_per_descent() {
         (&usual, Model::Dynamic, 1e-5, 18.71, 112.5),
         (&usual, Model::Dynamic, 1e-6, 31.71, 190.7),
         (&usual, Model::QuasiSteady, 1e-6, 34.16, 205.5),
-        (&hard, Model::Dynamic, 1e-6, 40.39, 241.6),
+        // Some are integrated again, closer; 40.39 and 241.6 without.
+        (&hard, Model::Dynamic, 1e-6, 45.65, 273.4),
         (&hard, Model::QuasiSteady, 1e-6, 36.68, 219.6),
     ];
     for (batch, model, tolerance, attempts, evaluations) in cases {
