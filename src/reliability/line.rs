@@ -11,7 +11,7 @@
 //! plain ones meet too few of them: a fifth of the lines is spread twice as wide, and all are weighed by the balance
 //! heuristic. Without these the interval held RP14 (a shaft) in 85 seeds of a hundred, with them in 94 (2 000 seeds). In many
 //! dimensions a wide line is too far out in all of them to count for much: a parabola of distance times curvature 0.5 to
-//! 0.8 is held in 95 to 98 of a hundred in two to ten dimensions and in 92 in twenty.
+//! 0.8 is held in 94 to 98 of a hundred in two to ten dimensions and in 92 in twenty (400 seeds).
 //!
 //! What is taken for granted is checked: points at random places of every fourth line ask whether they breach as the
 //! crossings say, limits are searched for several design points, and lines that carry the estimate alone are
