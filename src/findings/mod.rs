@@ -27,6 +27,7 @@ pub mod shapley;
 mod story;
 pub mod sweep;
 pub mod sweep_best;
+mod this_brake;
 pub mod tighten;
 pub mod trade;
 
@@ -258,7 +259,7 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
     Ok(Findings {
         format: 1,
         title: study.title.clone(),
-        verdict,
+        verdict: this_brake::two_statements(study, verdict, &epistemic),
         stopping: sequence::stopping(study, record.counts().samples(), evidence.stop),
         probabilities,
         rare: rare::rare_findings(study, &evidence.rare, evidence.nominal.as_ref().ok()),
