@@ -5,7 +5,7 @@ use super::{Ending, done};
 use crate::error::Result;
 use crate::reliability::adaptive::Until;
 use crate::render::table;
-use crate::study::Study;
+use crate::study::{RequirementOf, Study};
 use crate::units::number;
 
 /// Validates a study and shows it.
@@ -44,8 +44,13 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<Ending> {
     }
     if let Some(requirement) = study.requirement {
         text += &format!(
-            "requirement: reliability {} at confidence {}\n",
-            requirement.reliability, requirement.confidence
+            "requirement: reliability {} at confidence {}, of {}\n",
+            requirement.reliability,
+            requirement.confidence,
+            match requirement.of {
+                RequirementOf::Average => "the average over all possible brakes",
+                RequirementOf::Brake => "this brake",
+            }
         );
     }
     let plan = &study.sampling;
@@ -129,6 +134,7 @@ fn json(study: &Study) -> serde_json::Value {
         "requirement": study.requirement.map(|r| serde_json::json!({
             "reliability": r.reliability,
             "confidence": r.confidence,
+            "of": r.of.name(),
         })),
         "sampling": {
             "design": study.sampling.design.name(),

@@ -5,11 +5,11 @@ use super::probabilities::{EventKind, ProbabilityFinding};
 use super::sequence;
 use crate::campaign::Record;
 use crate::error::Result;
-use crate::numerics::interval::Earned;
+use crate::numerics::interval::{Earned, Estimate};
 use crate::reliability::demonstration::{Demonstration, Requirement, Verdict, minimum_samples};
 use crate::reliability::probability::Proportion;
 use crate::reliability::replicates::from_replicate_counts;
-use crate::study::{StoppingPlan, Study};
+use crate::study::{RequirementOf, StoppingPlan, Study};
 use serde::Serialize;
 
 /// How many rows the failures-allowed table has: 0 to 3 failures.
@@ -46,6 +46,15 @@ pub enum Decision {
         /// well, both hold together at the requirement's confidence.
         bounds: Earned,
     },
+    /// The probability over the epistemic inputs that this brake meets the requirement.
+    Brake {
+        /// Largest acceptable probability of any breach.
+        allowed: f64,
+        /// Probability that the brake's own is at most that; the interval is of the computation.
+        probability: Estimate,
+        /// How probable it must be.
+        required: f64,
+    },
 }
 
 /// The verdict and its evidence.
@@ -55,6 +64,10 @@ pub struct VerdictFinding {
     pub word: VerdictWord,
     /// The verdict as a sentence or two.
     pub statement: String,
+    /// What the verdict is of: `average` over all possible brakes, or this `brake`.
+    pub of: &'static str,
+    /// Where there are epistemic inputs: what holds of the other of the two.
+    pub other: Option<String>,
     /// Required reliability.
     pub reliability: Option<f64>,
     /// Confidence with which it must be demonstrated.
@@ -80,6 +93,8 @@ pub(super) fn verdict(
         return Ok(VerdictFinding {
             word: VerdictWord::NoRequirement,
             statement,
+            of: RequirementOf::Average.name(),
+            other: None,
             reliability: None,
             confidence: None,
             decision: None,
@@ -120,6 +135,8 @@ pub(super) fn verdict(
     Ok(VerdictFinding {
         word,
         statement,
+        of: RequirementOf::Average.name(),
+        other: None,
         reliability: Some(stated.reliability),
         confidence: Some(stated.confidence),
         decision: Some(decision),

@@ -28,6 +28,7 @@ pub mod shapley;
 mod story;
 pub mod sweep;
 pub mod sweep_best;
+mod this_brake;
 pub mod tighten;
 pub mod trade;
 
@@ -43,7 +44,7 @@ use crate::campaign::{self, PickFreezeOutcomes, RareEvent, Record, Verification}
 use crate::descent::{Fault, Outcome, OutcomeQuantity};
 use crate::error::Result;
 use crate::reliability::adaptive::Stop;
-use crate::study::Study;
+use crate::study::{RequirementOf, Study};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -256,6 +257,12 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
     let drivers = drivers::drivers(study, &evidence.pick_freeze)?;
     let shapley = shapley::shapley(study, &evidence.shapley)?;
     let epistemic = epistemic::epistemic(study, &evidence.epistemic)?;
+    let mut verdict = this_brake::two_statements(study, verdict, &epistemic);
+    // Numbers that cannot be trusted decide nothing of this brake either.
+    let of_brake = study.requirement.is_some_and(|stated| stated.of == RequirementOf::Brake);
+    if of_brake && numerical.withdrawn.is_some() {
+        verdict = numerical::heed(study, record, &evidence.verification, &mut numerical, verdict)?;
+    }
     Ok(Findings {
         format: 1,
         title: study.title.clone(),

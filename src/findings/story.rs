@@ -4,7 +4,7 @@
 use super::rare::DesignPointInput;
 use crate::descent::{Outcome, OutcomeQuantity};
 use crate::physics::{Parameter, Target};
-use crate::study::Study;
+use crate::study::{Nature, Study};
 use crate::units::{System, format_engineering, number};
 
 /// Inputs named in the story.
@@ -38,11 +38,13 @@ pub(super) fn story(
         parts.join("; ")
     );
     if let [_, _, ..] = told[..] {
-        let rarest = told.iter().map(|input| input.beyond).fold(1.0, f64::min);
-        text += &format!(
-            " The rarest of these alone comes {}; it takes them together.",
-            once_in(rarest)
-        );
+        let rarest = told.iter().min_by(|a, b| a.beyond.total_cmp(&b.beyond));
+        if let Some(rarest) = rarest {
+            text += &format!(
+                " The rarest of these alone has {}; it takes them together.",
+                one_in(rarest.beyond, nature_of(study, &rarest.path))
+            );
+        }
     }
     if let Some(flight) = flight {
         text += &format!(" {}", flight_in_words(flight, nominal));
@@ -57,23 +59,33 @@ fn part(study: &Study, input: &DesignPointInput) -> Option<String> {
     let shown = |value: f64| format_engineering(value, quantity, System::UsCustomary, 4);
     let high = input.percentile > 0.5;
     Some(format!(
-        "{} ({} {}, median {}: as {} or {} {}; {} of the distance)",
+        "{} ({} {}, median {}; as {} or {} has {}; {} of the distance)",
         cause(known.target, high),
         input.path,
         shown(input.value),
         shown(input.median),
         if high { "high" } else { "low" },
         if high { "higher" } else { "lower" },
-        once_in(input.beyond),
+        one_in(input.beyond, known.nature),
         format_args!("{} %", number(100.0 * input.importance, 2))
     ))
 }
 
-fn once_in(share: f64) -> String {
+fn nature_of(study: &Study, path: &str) -> Nature {
+    let input = study.inputs.iter().find(|input| input.target.path() == path);
+    input.map_or(Nature::Varies, |input| input.nature)
+}
+
+/// How rare: an input that varies changes from flight to flight, one that is not known is the same in every flight of a brake.
+fn one_in(share: f64, nature: Nature) -> String {
+    let of = match nature {
+        Nature::Varies => "flight",
+        Nature::Unknown => "brake",
+    };
     if share > 0.0 {
-        format!("once in {} flights", number(share.recip(), 2))
+        format!("one {of} in {}", number(share.recip(), 2))
     } else {
-        "never".to_owned()
+        format!("no {of}")
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::ReproductionFinding;
 use super::known::GoAnswer;
+use super::this_brake;
 use super::trade::proportion;
 use crate::campaign::common_numbers::Event;
 use crate::campaign::tighten::Tightening;
@@ -195,7 +196,7 @@ pub fn tighten(study: &Study, found: &Tightening, command: String) -> Result<Tig
             command,
         },
     };
-    finding.statement = statement(&finding);
+    finding.statement = statement(&finding, this_brake::has_epistemic_inputs(study));
     Ok(finding)
 }
 
@@ -275,7 +276,7 @@ fn plan_of(study: &Study, found: &Tightening, allocation: &Allocation) -> PlanFi
     }
 }
 
-fn statement(finding: &TightenFinding) -> String {
+fn statement(finding: &TightenFinding, epistemic: bool) -> String {
     let percent = super::percent::percent;
     let demonstration = &finding.demonstration;
     let counts = &demonstration.counts;
@@ -289,10 +290,19 @@ fn statement(finding: &TightenFinding) -> String {
         1 => String::new(),
         several => format!(" (confirming run {several}; the confidence allows for every attempt)"),
     };
+    // Each of those descents has a brake of its own.
+    let (mean, of_one) = match epistemic {
+        true => (
+            " on average over all possible brakes",
+            " A single brake of this plan may still exceed the target: with its values in the study, `reeldown run` states the \
+             probability that this brake meets it.",
+        ),
+        false => ("", ""),
+    };
     match finding.answer {
         GoAnswer::Go => format!(
-            "A plan of cost {:.2} meets the target: P(any breach) ≤ {target} is demonstrated at {confidence} \
-             confidence. {seen}{attempts}: at most {upper}.",
+            "A plan of cost {:.2} meets the target{mean}: P(any breach) ≤ {target} is demonstrated at {confidence} \
+             confidence. {seen}{attempts}: at most {upper}.{of_one}",
             finding.plan.cost
         ),
         GoAnswer::NoGo => {

@@ -44,7 +44,9 @@ pub(super) fn model_form(finding: &ModelFormFinding) -> Option<ModelFormView> {
             format!("The verdict depends on the form of the thermal model: {compared}.")
         }
         (Some(false), _, _) => {
-            format!("The verdict is the same by either thermal model; P is not: {compared}.")
+            let apart = difference.interval.interval().is_some_and(|i| i.lower * i.upper > 0.0);
+            let also = if apart { "P is not" } else { "so is P, as far as these samples tell" };
+            format!("The verdict is the same by either thermal model; {also}: {compared}.")
         }
         (None, Some(_), Some(_)) => format!(
             "{} samples do not decide the requirement by both thermal models: {compared}.",

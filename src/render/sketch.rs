@@ -3,7 +3,7 @@
 
 use super::figures_of_speech::probability;
 use crate::descent::OutcomeQuantity;
-use crate::findings::{Distribution, EventKind, Findings, VerdictWord};
+use crate::findings::{Decision, Distribution, EventKind, Findings, VerdictWord};
 use crate::units::{Quantity, display, number};
 
 /// Most columns of blocks.
@@ -114,6 +114,16 @@ pub(super) fn verdict(findings: &Findings) -> String {
         VerdictWord::Undecided => "UNDECIDED",
         VerdictWord::NoRequirement => "NO REQUIREMENT",
     };
+    if let Some(Decision::Brake { allowed, probability: belief, required }) =
+        &findings.verdict.decision
+    {
+        let value = belief.value.map_or("unknown".to_owned(), share);
+        return format!(
+            "{word}: this brake has P(any breach) of at most {} with probability {value}, required {}",
+            probability(*allowed),
+            probability(*required)
+        );
+    }
     let any = findings.probabilities.iter().find(|p| p.kind == EventKind::Any);
     let Some((any, p)) = any.and_then(|any| Some((any, any.probability?))) else {
         return word.to_owned();

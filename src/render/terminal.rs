@@ -41,6 +41,9 @@ pub fn terminal(findings: &Findings, style: Style) -> String {
     let mut text = format!("{}\n\n", style.paint(&view.title, "1"));
     let heading = style.paint(view.verdict.heading.trim_end_matches('.'), colour);
     text += &format!("{heading}\n{}\n", wrapped(&view.verdict.statement));
+    if let Some(other) = &view.verdict.other {
+        text += &format!("{}\n", wrapped(other));
+    }
     if let Some(sharpest) = &view.verdict.sharpest {
         text += &format!("{}\n", wrapped(&sharpest.replace('`', "")));
     }

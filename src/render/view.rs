@@ -54,6 +54,7 @@ pub(super) struct View {
 pub(super) struct Verdict {
     pub heading: &'static str,
     pub statement: String,
+    pub other: Option<String>,
     pub sharpest: Option<String>,
 }
 
@@ -260,7 +261,12 @@ fn verdict(findings: &Findings) -> Verdict {
             None => format!("Most often breached: {} ({share}).", p.title),
         }
     });
-    Verdict { heading, statement: findings.verdict.statement.clone(), sharpest }
+    Verdict {
+        heading,
+        statement: findings.verdict.statement.clone(),
+        other: findings.verdict.other.clone(),
+        sharpest,
+    }
 }
 
 fn probability_row(finding: &crate::findings::ProbabilityFinding) -> ProbabilityRow {

@@ -345,7 +345,15 @@ fn take_marker(directory: &Path) -> Result<(File, Option<Marker>)> {
         let mut text = Vec::new();
         let marker = |text: &[u8]| serde_json::from_slice::<Marker>(text).ok();
         if !may_hold(&file) {
-            let process = file.read_to_end(&mut text).ok().and_then(|_| marker(&text));
+            // Whoever has just taken it may not have written its number yet.
+            let process = (0..20).find_map(|attempt| {
+                if attempt > 0 {
+                    std::thread::sleep(std::time::Duration::from_millis(10));
+                }
+                text.clear();
+                file.rewind().and_then(|()| file.read_to_end(&mut text)).ok()?;
+                marker(&text)
+            });
             let process = process.map_or(String::new(), |m| format!(" (process {})", m.process));
             let reason = format!("another reeldown is writing into it{process}");
             let help = "wait until it is done, or name another directory with --out";

@@ -1,6 +1,6 @@
 //! Digests: of the resolved study, which fixes every number of a run, and of its raw texts.
 
-use super::{Input, LimitKind, Study, TighteningCost};
+use super::{Input, LimitKind, RequirementOf, Study, TighteningCost};
 use crate::reliability::adaptive::Until;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -59,7 +59,12 @@ impl Study {
         }
         if let Some(requirement) = self.requirement {
             let (reliability, confidence) = (requirement.reliability, requirement.confidence);
-            lines.push(format!("requirement {reliability:e} {confidence:e}"));
+            // The default leaves the digests of earlier studies as they were.
+            let of = match requirement.of {
+                RequirementOf::Average => "",
+                RequirementOf::Brake => " of=brake",
+            };
+            lines.push(format!("requirement {reliability:e} {confidence:e}{of}"));
         }
         let plan = self.sampling;
         lines.push(format!(

@@ -285,6 +285,34 @@ impl Limit {
     }
 }
 
+/// Whose reliability is required, where something about the brake is not known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RequirementOf {
+    /// The average over all brakes that the epistemic inputs allow, and over what varies.
+    Average,
+    /// The one brake that is built: its own reliability, which is not known, must be large enough with a probability of
+    /// `confidence` over the epistemic inputs.
+    Brake,
+}
+
+impl RequirementOf {
+    /// Both.
+    pub const ALL: [RequirementOf; 2] = [RequirementOf::Average, RequirementOf::Brake];
+
+    /// The name in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            RequirementOf::Average => "average",
+            RequirementOf::Brake => "brake",
+        }
+    }
+
+    /// The member of a name.
+    pub fn from_name(name: &str) -> Option<RequirementOf> {
+        Self::ALL.into_iter().find(|of| of.name() == name)
+    }
+}
+
 /// What the verdict is held against: reliability `R` demonstrated at confidence `C`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Requirement {
@@ -292,6 +320,8 @@ pub struct Requirement {
     pub reliability: f64,
     /// Confidence with which it must be demonstrated, in (0, 1).
     pub confidence: f64,
+    /// Whose reliability it is.
+    pub of: RequirementOf,
 }
 
 /// How the inputs are sampled.

@@ -11,7 +11,7 @@ use super::vocabulary::{
 mod statements;
 
 use super::read::SHARES;
-use super::{Known, Nature};
+use super::{Known, Nature, RequirementOf};
 use crate::descent::vector::TOLERANCES;
 use crate::descent::{Model, OutcomeQuantity};
 use crate::physics::parameters::{PARAMETERS, Parameter, ParameterInfo};
@@ -32,7 +32,14 @@ pub fn study() -> Value {
         limits.insert(outcome.name().to_owned(), described(limit, outcome.title()));
     }
     let limits = json!({ "type": "object", "properties": limits, "additionalProperties": false });
-    let requirement = table(REQUIREMENT, |_| share(), &["reliability", "confidence"]);
+    let requirement = table(
+        REQUIREMENT,
+        |info| match info.name {
+            "of" => json!({ "enum": RequirementOf::ALL.map(RequirementOf::name) }),
+            _ => share(),
+        },
+        &["reliability", "confidence"],
+    );
     let mut sampling = table(SAMPLING, sampling_key, &[]);
     insert(&mut sampling, "not", json!({ "required": ["samples", "until"] }));
     let numerics = table(

@@ -7,7 +7,8 @@ use super::until;
 use super::values::{check_surface, parameter_path, possible_range, written};
 use super::vocabulary as keys;
 use super::{
-    Limit, LimitKind, Numerics, ReliabilityPlan, Requirement, SamplingPlan, SensitivityPlan, Stated,
+    Limit, LimitKind, Numerics, ReliabilityPlan, Requirement, RequirementOf, SamplingPlan,
+    SensitivityPlan, Stated,
 };
 use crate::descent::outcome::TIME_LIMIT_S;
 use crate::descent::vector::{TOLERANCES, default_tolerance};
@@ -257,6 +258,13 @@ pub(super) fn requirement(node: &Node) -> Result<Requirement> {
     Ok(Requirement {
         reliability: share("reliability", "0.99")?,
         confidence: share("confidence", "0.90")?,
+        of: match section.get("of") {
+            None => RequirementOf::Average,
+            Some(node) => {
+                let names = RequirementOf::ALL.map(RequirementOf::name);
+                read::choice(node, "requirement of", &names, RequirementOf::from_name)?
+            }
+        },
     })
 }
 

@@ -3,7 +3,7 @@
 use super::document::Node;
 use super::read::{self, Section};
 use super::vocabulary as keys;
-use super::{Requirement, SamplingPlan};
+use super::{Requirement, RequirementOf, SamplingPlan};
 use crate::error::Result;
 use crate::reliability::adaptive::Until;
 use crate::sampling;
@@ -97,6 +97,10 @@ fn rule(node: &Node, section: &Section, requirement: Option<Requirement>) -> Res
             (true, None) => Err(node.place.error(
                 "`decided` needs a requirement",
                 "expected a section [requirement], or relative_error = 0.05",
+            )),
+            (true, Some(stated)) if stated.of == RequirementOf::Brake => Err(node.place.error(
+                "`decided` decides of the average over brakes, and the requirement is of this brake",
+                "expected relative_error = 0.05, or [requirement] of = \"average\"",
             )),
             (true, Some(stated)) => Ok(Until::Decided { allowed: 1.0 - stated.reliability }),
         },

@@ -42,6 +42,11 @@ pub(super) static EPISTEMIC: &[KeyInfo] = &[
 pub(super) static REQUIREMENT: &[KeyInfo] = &[
     key("reliability", "smallest acceptable probability that no limit is breached"),
     key("confidence", "confidence with which the reliability must be demonstrated"),
+    key(
+        "of",
+        "what the reliability is required of: the average over all possible brakes (the default), or this brake, whose own \
+         reliability must be that large with probability `confidence` over the epistemic inputs",
+    ),
 ];
 
 /// Keys of `[sampling]`.

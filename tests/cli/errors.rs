@@ -134,7 +134,7 @@ fn regression_a_misspelt_command_is_told_from_a_study() {
     let answer = reeldown(&["chek"]).ended_with(1);
     assert_says(&answer, &["no command and no study file called chek", "`reeldown check`"]);
     let answer = reeldown(&["xyz"]).ended_with(1);
-    assert_says(&answer, &["the commands are run, descend"]);
+    assert_says(&answer, &["the commands are run, plan"]);
     // What can only be a file is one.
     assert_says(&reeldown(&["chek.toml"]).ended_with(1), &["cannot read chek.toml: no such file"]);
 }
