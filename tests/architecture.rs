@@ -51,12 +51,6 @@ mod architecture {
         &["campaign/refutation", "campaign/tighten"],
         &["campaign/scores", "campaign/trade"],
         &["cli/arguments", "cli/calibrate_arguments", "cli/rig_arguments"],
-        &[
-            "descent/vector/group",
-            "descent/vector/initial_layer",
-            "descent/vector/model",
-            "descent/vector/start",
-        ],
         &["findings/compare", "findings/compare_findings", "findings/compare_studies"],
         &["findings/derivatives", "findings/design_value", "findings/trade"],
         &["findings/rare", "findings/story"],

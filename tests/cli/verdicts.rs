@@ -100,7 +100,7 @@ fn property_a_line_that_never_runs_out_is_a_breach() {
     );
     assert_eq!(findings["nominal"]["breaches"], serde_json::json!(["time"]));
     let event = &findings["epistemic"]["events"][3];
-    assert_eq!(event["mean"]["value"], 1.0, "{event}");
+    assert!(event["mean"]["interval"]["lower"].as_f64().is_some_and(|p| p > 0.99), "{event}");
     // "Go" nowhere: P(any breach) is 1 at every temperature and viscosity of the chart and the map.
     for chart in findings["known"]["charts"].as_array().into_iter().flatten() {
         for at in chart["probability"].as_array().into_iter().flatten() {
