@@ -54,6 +54,9 @@ fn run(settings: &[&str]) -> Sample {
             .expect("nested descents")
             .ok_or_else(|| "none".to_owned()),
         known: Err(unasked()),
+        exact: campaign::exact::run_exact(&study, &progress)
+            .map_err(|reason| reason.to_string())
+            .and_then(|found| found.ok_or_else(unasked)),
         command: "reeldown run".to_owned(),
     })
     .unwrap();
