@@ -10,6 +10,7 @@ pub mod calibration;
 pub mod common_numbers;
 pub mod epistemic;
 mod evaluate;
+pub mod exact;
 pub mod given_sample;
 pub mod known;
 mod limit_state;

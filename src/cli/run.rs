@@ -136,13 +136,14 @@ impl Run<'_> {
         if progress.stopping() {
             return Ok(self.interrupted(samples, true));
         }
-        let (given, screening, shapley, trade, known, epistemic) = {
+        let (given, screening, shapley, trade, known, epistemic, exact) = {
             let descents = campaign::shapley::shapley_descents(self.study)
                 + campaign::given_sample::given_descents(self.study)
                 + campaign::screening::screening_descents(self.study)
                 + campaign::trade::trade_descents(self.study)
                 + campaign::known::known_descents(self.study)
-                + campaign::epistemic::epistemic_descents(self.study);
+                + campaign::epistemic::epistemic_descents(self.study)
+                + campaign::exact::exact_descents(self.study);
             let _watch = Watch::start(&progress, descents, "trade of tolerances");
             (
                 campaign::given_sample::run_given(self.study, &record, &progress),
@@ -151,6 +152,7 @@ impl Run<'_> {
                 campaign::trade::run_trade(self.study, &record, &progress),
                 campaign::known::run_known(self.study, &progress),
                 campaign::epistemic::run_epistemic(self.study, &progress),
+                campaign::exact::run_exact(self.study, &progress),
             )
         };
         if progress.stopping() {
@@ -181,6 +183,7 @@ impl Run<'_> {
             calibrated,
             epistemic: or_reason(epistemic, NO_EPISTEMIC),
             model_form: model_form.ok_or_else(|| "the study states no limit".to_owned()),
+            exact: or_reason(exact, "the study has no limit"),
             command: self.asked.command.clone(),
         })?;
         self.write(&findings)?;

@@ -11,6 +11,7 @@ pub mod derivatives;
 pub mod design_value;
 mod drivers;
 pub mod epistemic;
+mod exact;
 mod figures;
 mod inputs;
 pub mod known;
@@ -34,6 +35,7 @@ pub mod trade;
 
 use crate::campaign::calibrated::CalibratedOutcomes;
 use crate::campaign::epistemic::EpistemicOutcomes;
+use crate::campaign::exact::ExactOutcomes;
 use crate::campaign::given_sample::GivenSample;
 use crate::campaign::known::KnownOutcomes;
 use crate::campaign::model_form::ModelFormOutcomes;
@@ -52,6 +54,7 @@ pub use calibrated::{CalibratedEvent, CalibratedFinding, MovedInput};
 pub use demonstration::{Decision, VerdictFinding, VerdictWord};
 pub use drivers::{DriverOutput, DriversFinding, FactorFinding, PairFinding};
 pub use epistemic::{EpistemicEvent, EpistemicFinding, ProbabilityBox, UnknownShare};
+pub use exact::{ExactFinding, ExactValue};
 pub use figures::{
     Checkpoint, ConstantTemperature, Convergence, Distribution, Exceedance, Fan, FanBand,
     FigureData, Interaction, InteractionInput, PaperRuns, paper_runs,
@@ -112,6 +115,8 @@ pub struct Findings {
     pub exceptions: ExceptionFinding,
     /// What is uncertain.
     pub inputs: Vec<InputFinding>,
+    /// What is taken as exact, and what that does.
+    pub exact: ExactFinding,
     /// How what is uncertain depends on each other, beside what is drawn together from rows of a file.
     pub correlations: Vec<CorrelationFinding>,
     /// The numbers behind the figures.
@@ -232,6 +237,8 @@ pub struct Evidence<'a> {
     pub known: std::result::Result<KnownOutcomes, String>,
     /// The study under the cards of the prior, if a card of it is a calibrated one.
     pub calibrated: Option<CalibratedOutcomes>,
+    /// Its exact values moved a little, or why they were not.
+    pub exact: std::result::Result<ExactOutcomes, String>,
     /// Its nested descents, or why there are none.
     pub epistemic: std::result::Result<EpistemicOutcomes, String>,
     /// Its first samples by the other thermal model too, or why they were not flown.
@@ -291,6 +298,7 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
         epistemic,
         exceptions: exceptions(record),
         inputs: inputs::inputs(study),
+        exact: exact::exact(study, &evidence.exact)?,
         correlations: inputs::correlations(study),
         numerical,
         method: MethodFinding {

@@ -5,6 +5,7 @@ mod calibration;
 mod compare;
 mod driver_view;
 mod epistemic_view;
+mod exact_view;
 mod figures;
 mod figures_of_speech;
 mod html;

@@ -3,6 +3,7 @@
 use super::calibrated_view::{Calibrated, calibrated};
 use super::driver_view::{Drivers, drivers, ranked};
 use super::epistemic_view::{Epistemic, epistemic};
+use super::exact_view::{Exact, exact};
 use super::figures_of_speech::{
     bare, count, maybe, probability, probability_interval, quantity_of, upper_end, value,
     value_interval,
@@ -46,6 +47,7 @@ pub(super) struct View {
     pub exceptions: Vec<String>,
     pub inputs: Vec<InputRow>,
     pub correlations: Vec<CorrelationRow>,
+    pub exact: Exact,
     pub method: Method,
     pub reproduction: Reproduction,
 }
@@ -211,6 +213,7 @@ pub(super) fn view(findings: &Findings) -> View {
                 source: correlation.source.clone(),
             })
             .collect(),
+        exact: exact(&findings.exact),
         method: Method {
             model: findings.method.model,
             design: findings.method.design.clone(),

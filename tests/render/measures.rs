@@ -119,3 +119,42 @@ fn reference_radau_the_derivatives_are_the_differences_of_the_plain_integrator()
         assert!((mean / slope - 1.0).abs() < 0.1, "the means are near the nominal values: {path}");
     }
 }
+
+#[test]
+fn regression_what_is_taken_as_exact_moves_the_answer_as_whole_runs_with_it_set_do() {
+    let findings = &independent().findings;
+    let change = |path: &str| {
+        let value = findings.exact.values.iter().find(|value| value.path == path).unwrap();
+        (value.change.value.unwrap(), value.change.standard_error.unwrap())
+    };
+    // `reeldown run --samples 100000 --set` one value 1 % larger, less the 40.485 % of the study as it is.
+    for (path, truth) in [
+        ("fluid.viscosity_temperature", 0.1534),
+        ("brake.outer_radius", 0.1298),
+        ("payload.weight", -0.0708),
+        ("reel.full_radius", -0.0444),
+        ("fluid.nominal_viscosity", 0.0309),
+    ] {
+        let (value, error) = change(path);
+        // Two standard errors of the runs' own difference.
+        assert!((value - truth).abs() < 4.5 * error + 0.003, "{path}: {value} ± {error}, {truth}");
+    }
+    // What no descent feels, and what cannot be moved by a share.
+    assert_eq!(change("thermal.air_temperature").0, 0.0);
+    let rotors = findings.exact.values.iter().find(|value| value.path == "brake.rotors").unwrap();
+    assert!(rotors.change.value.is_none());
+    // Every parameter of the design is in the table or in the card.
+    let uncertain = findings.inputs.len();
+    assert_eq!(
+        findings.exact.values.len() + uncertain,
+        reeldown::physics::parameters::PARAMETERS.len()
+    );
+    let alert = findings.exact.alert.as_deref().unwrap();
+    assert!(
+        alert.contains("`fluid.viscosity_temperature`") && !alert.contains("nominal_viscosity")
+    );
+    let report = render::markdown(findings, &render::figures(findings)).unwrap();
+    assert!(
+        report.contains("## What is taken as exact") && report.contains("ALERT: taken as exact")
+    );
+}

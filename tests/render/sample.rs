@@ -57,6 +57,9 @@ fn run(settings: &[&str]) -> Sample {
         model_form: campaign::model_form::run_model_form(&study, &progress)
             .map_err(|reason| reason.to_string())
             .and_then(|found| found.ok_or_else(unasked)),
+        exact: campaign::exact::run_exact(&study, &progress)
+            .map_err(|reason| reason.to_string())
+            .and_then(|found| found.ok_or_else(unasked)),
         command: "reeldown run".to_owned(),
     })
     .unwrap();
