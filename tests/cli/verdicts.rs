@@ -63,7 +63,7 @@ fn property_without_a_requirement_the_headline_is_the_interval_of_the_table() {
         match (percent("lower"), percent("upper")) {
             (Some(lower), Some(upper)) => {
                 let numbers: Vec<f64> =
-                    said.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+                    said.split(['(', ' ']).filter_map(|word| word.parse().ok()).collect();
                 let close = |x: f64| numbers.iter().any(|n| (n / x - 1.0).abs() < 1e-3);
                 assert!(limit == 210 && close(lower) && close(upper), "{said} {any}");
             }
@@ -101,11 +101,13 @@ fn property_a_line_that_never_runs_out_is_a_breach() {
     assert_eq!(findings["nominal"]["breaches"], serde_json::json!(["time"]));
     let event = &findings["epistemic"]["events"][3];
     assert!(event["mean"]["interval"]["lower"].as_f64().is_some_and(|p| p > 0.99), "{event}");
-    // "Go" nowhere: P(any breach) is 1 at every temperature and viscosity of the chart and the map.
-    for chart in findings["known"]["charts"].as_array().into_iter().flatten() {
-        for at in chart["probability"].as_array().into_iter().flatten() {
-            assert_eq!(at["probability"], 1.0, "{chart}");
-        }
+    // "Go" nowhere: P(any breach) is 1 at every measured value of every chart.
+    let charts = findings["known"]["charts"].as_array().cloned().unwrap_or_default();
+    let rows: Vec<Value> =
+        charts.iter().flat_map(|c| c["rows"].as_array().cloned().unwrap_or_default()).collect();
+    assert!(!rows.is_empty(), "{}", findings["known"]);
+    for row in rows {
+        assert_eq!((&row["probability"]["value"], &row["answer"]), (&1.0.into(), &"no_go".into()));
     }
     let note = "a descent that has not deployed after 1800 s";
     assert!(answer.err.contains(note), "{}", answer.err);
