@@ -11,7 +11,7 @@ use crate::physics::Coefficients;
 use crate::sampling::Sampler;
 use crate::study::Study;
 
-/// A margin within this share of its limit is near it, or within [`MARGIN_ERRORS`] of the worst errors measured where
+/// A margin within this share of its limit is near it, or within three times the worst error measured where
 /// that is more.
 pub const NEAR: f64 = 1e-4;
 /// So many times the worst error that was seen may have been missed.

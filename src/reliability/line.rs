@@ -16,7 +16,7 @@
 //! What is taken for granted is checked: points at random places of every fourth line ask whether they breach as the
 //! crossings say, limits are searched for several design points, and lines that carry the estimate alone are
 //! noticed. Where a check fails the whole is done again by lines that are searched over their whole length
-//! ([`super::searched_lines`]), and the estimate says so.
+//! (`searched_lines`), and the estimate says so.
 //!
 //! Sources: Hohenbichler and Rackwitz, J. Eng. Mech. 114 (1988) 2195; Koutsourelakis, Pradlwarter and
 //! Schuëller, Probabilistic Engineering Mechanics 19 (2004) 409; Owen, Annals of Statistics 25 (1997) 1541, for the

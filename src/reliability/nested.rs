@@ -7,7 +7,7 @@
 //! anything else shows in how the halves differ from their mean.
 //!
 //! A half integrates over v instead of counting wherever it can: its points lie on lines, along which the margins are
-//! interpolated (see [`inner`]).
+//! interpolated (see `inner`).
 
 mod estimates;
 mod inner;
