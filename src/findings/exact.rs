@@ -110,7 +110,8 @@ fn alert(values: &[ExactValue], strongest: Option<&(String, Estimate)>) -> Optio
     let (name, most) = strongest?;
     let error = |estimate: &Estimate| estimate.standard_error.unwrap_or(0.0);
     let outweighs = |value: &&ExactValue| {
-        let both = (error(&value.change).powi(2) + error(most).powi(2)).sqrt();
+        let (a, b) = (error(&value.change), error(most));
+        let both = (a * a + b * b).sqrt();
         size(&value.change) > size(most) + 2.0 * both
     };
     let points = |estimate: &Estimate| crate::units::number(100.0 * size(estimate), 2);
