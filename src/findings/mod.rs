@@ -15,6 +15,7 @@ mod exact;
 mod figures;
 mod inputs;
 pub mod known;
+mod limits;
 mod margins;
 pub mod measures;
 mod model_form;
@@ -61,6 +62,7 @@ pub use figures::{
 };
 pub use inputs::{CorrelationFinding, InputFinding};
 pub use known::KnownFinding;
+pub use limits::LimitFinding;
 pub use margins::{MarginFinding, MarginQuantile};
 pub use measures::MeasuresFinding;
 pub use model_form::{FormFinding, ModelFormFinding};
@@ -85,6 +87,8 @@ pub struct Findings {
     pub verdict: VerdictFinding,
     /// Why the sampling ended where it did, if that was decided while sampling.
     pub stopping: Option<StoppingFinding>,
+    /// The limits, and where each comes from.
+    pub limits: Vec<LimitFinding>,
     /// Each limit, any limit, each pair.
     pub probabilities: Vec<ProbabilityFinding>,
     /// Events too rare for the samples, by several methods.
@@ -275,6 +279,7 @@ pub fn gather(evidence: &Evidence) -> Result<Findings> {
         title: study.title.clone(),
         verdict,
         stopping: sequence::stopping(study, record.counts().samples(), evidence.stop),
+        limits: limits::limits(study),
         probabilities,
         rare: rare::rare_findings(study, &evidence.rare, evidence.nominal.as_ref().ok()),
         model_form: model_form::model_form(study, &evidence.model_form)?,
