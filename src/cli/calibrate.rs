@@ -63,7 +63,7 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
         let screened = calibration::screen(&study, &all, &options)?;
         if let Some(why) = findings::refusal(&findings::suspicions(&screened)) {
             return Err(Error::argument(format!(
-                "{why}. Correct the run, or say --accept to calibrate with it as it is"
+                "{why}. correct the run, or use --accept to calibrate with it unchanged"
             )));
         }
     }

@@ -86,7 +86,7 @@ fn single(
                 let run = rig::held(&study.design, *drive, *level)?;
                 (format!("constant {} of {held}", drive.name()), run)
             }
-            [] => return Err(Error::argument("nothing pulls")),
+            [] => return Err(Error::argument("no load given")),
         },
     };
     if let Some(path) = &arguments.trace {

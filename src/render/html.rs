@@ -116,12 +116,18 @@ fn prose(text: &str) -> String {
     if inside {
         html.push_str("</code>");
     }
-    html
+    // A number does not part from its sign at a line's end.
+    html.replace(" %", "\u{a0}%")
 }
 
 #[cfg(test)]
 mod tests {
     use super::prose;
+
+    #[test]
+    fn analytic_a_number_keeps_its_percent_sign() {
+        assert_eq!(prose("P = 4 % of"), "P = 4\u{a0}% of");
+    }
 
     #[test]
     fn analytic_backticks_become_code_and_markup_does_not_pass() {
