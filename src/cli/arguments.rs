@@ -234,6 +234,9 @@ pub(super) struct CompareArguments {
     /// Write the comparison as Markdown too
     #[arg(long, value_name = "FILE")]
     pub markdown: Option<PathBuf>,
+    /// Write the comparison as an HTML page too
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
     /// Print the comparison as one JSON object in SI, and nothing else, on standard output
     #[arg(long)]
     pub json: bool,

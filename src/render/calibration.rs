@@ -250,12 +250,8 @@ fn sampling(finding: &CalibrationFinding) -> String {
 fn figures_named(figures: &[Figure], wanted: impl Fn(&str) -> bool) -> String {
     let mut text = String::new();
     for figure in figures.iter().filter(|figure| wanted(&figure.name)) {
-        text += &format!(
-            "\n![{}](figures/{})\n\n{}\n",
-            figure.alternative,
-            figure.file_name(),
-            figure.caption
-        );
+        text += &format!("\n{}", figure.markdown().trim_end());
+        text.push('\n');
     }
     text
 }

@@ -48,8 +48,7 @@ pub fn sweep_markdown(sweep: &SweepFinding, figures: &[Figure]) -> String {
     text += "\n## The design space\n\n";
     for figure in figures {
         text += &format!("### {}\n\n", figure.title);
-        text += &format!("![{}](figures/{})\n\n", figure.alternative, figure.file_name());
-        text += &format!("{}\n\n", figure.caption);
+        text += &figure.markdown();
     }
     text += match sweep.paths.len() {
         1 => "## Value by value\n\n",
@@ -241,8 +240,8 @@ fn interval(estimate: &Estimate, quantity: Quantity) -> String {
         (None, None) => "all breach".to_owned(),
         (None, Some(_)) => match estimate.interval.why_none() {
             Some(why) if why.contains("end of its range") => "end of the range".to_owned(),
-            Some(why) if why.contains("no breach") => "no failures in this range".to_owned(),
-            _ => "minimum not resolved".to_owned(),
+            Some(why) if why.contains("no breach") => "no failures".to_owned(),
+            _ => "not resolved".to_owned(),
         },
     }
 }
