@@ -174,8 +174,9 @@ fn design_value(finding: &DesignValueFinding) -> String {
 
 /// The trade in words.
 pub(super) fn trade(finding: &TradeFinding) -> Trade {
-    let nothing = (finding.best.is_empty() && finding.none.is_none())
-        .then(|| "There is no input whose halved spread lowers P(any breach) significantly.".to_owned());
+    let nothing = (finding.best.is_empty() && finding.none.is_none()).then(|| {
+        "There is no input whose halved spread lowers P(any breach) significantly.".to_owned()
+    });
     let best = finding.best.iter().map(|found| tightening(found, "")).chain(nothing);
     let best = best.chain(finding.design.iter().map(design_value));
     let values = finding.design.iter().zip(&finding.at_design);

@@ -133,7 +133,11 @@ fn property_what_no_sample_shows_is_not_told() {
     ] {
         assert!(words.contains(wanted), "{wanted}: {out}");
     }
-    assert!(!words.contains("the optimum of fluid.nominal_viscosity is 1") && !words.contains("Halving"), "{out}");
+    assert!(
+        !words.contains("the optimum of fluid.nominal_viscosity is 1")
+            && !words.contains("Halving"),
+        "{out}"
+    );
 }
 
 #[test]
