@@ -6,7 +6,7 @@ use super::{Ending, done, parentage};
 use crate::campaign::ROW_GROUP;
 use crate::error::{Error, Result};
 use crate::findings::compare::{FinishedRun, compare as findings};
-use crate::render;
+use crate::render::{self, Mark};
 use crate::store::{OutcomesReader, refuse_unfinished, verify_listed, write_text};
 use serde_json::Value;
 use std::path::Path;
@@ -21,6 +21,10 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<Ending> {
     let finding = findings(&before?, &after?)?;
     if let Some(path) = &arguments.markdown {
         write_text(path, &render::compare_markdown(&finding))?;
+    }
+    if let Some(path) = &arguments.html {
+        let report = render::compare_markdown(&finding);
+        write_text(path, &render::page("Two runs compared", Mark::None, &report, &[])?)?;
     }
     if arguments.json {
         let json = serde_json::to_string_pretty(&finding)

@@ -29,7 +29,7 @@ pub(super) static STUDY: &[KeyInfo] = &[
     key("reliability", "how small probabilities are estimated"),
     key("trade", "how the trade of tolerances is computed"),
     key("tighten", "what a plan of tightenings is to reach, and by which means"),
-    key("epistemic", "how what varies is told apart from what is not known"),
+    key("epistemic", "how aleatory and epistemic uncertainty are separated"),
 ];
 
 /// Keys of `[epistemic]`.
