@@ -1,5 +1,6 @@
 //! Probabilities that the samples alone cannot show: the reliability methods on a study's descents.
 
+use super::analysis::{Analysis, Found, Run};
 use super::{DescentLimitState, Progress, Record};
 use crate::descent::{Fault, Outcome};
 use crate::error::Result;
@@ -56,6 +57,40 @@ pub struct MostLikelyBreach {
     pub flight: std::result::Result<Outcome, Fault>,
 }
 
+/// Descents that a method takes for an event, about.
+const DESCENTS: u64 = 10_000;
+
+impl Analysis<'_> for Vec<RareEvent> {
+    const NAME: &'static str = "rare events";
+
+    /// At most: which events were seen too rarely is known when the samples have been run.
+    fn cost(study: &Study) -> Found<u64> {
+        let methods = methods(study).len();
+        Ok(DESCENTS * (methods * candidates(study).len()) as u64)
+    }
+
+    fn compute(run: Run<'_>) -> Result<Option<Self>> {
+        rare_events(run.study, run.record, run.progress).map(Some)
+    }
+}
+
+/// The methods that are asked.
+fn methods(study: &Study) -> Vec<&str> {
+    match study.reliability.methods.as_deref() {
+        Some(methods) => methods.iter().map(String::as_str).collect(),
+        None => DEFAULT_METHODS.to_vec(),
+    }
+}
+
+/// The events that may be asked about: every limit, if the study names methods all pairs of limits, and any of them.
+fn candidates(study: &Study) -> Vec<Event> {
+    let limits = study.limits.len();
+    let each = (0..limits).map(Event::Limit);
+    let pairs = (0..limits).flat_map(|i| (i + 1..limits).map(move |j| Event::Both(i, j)));
+    let pairs = pairs.filter(|_| study.reliability.methods.is_some());
+    each.chain(pairs).chain((limits > 1).then_some(Event::Any)).collect()
+}
+
 /// Asks the reliability methods about every limit, and any of them, that the samples saw too rarely or, if the
 /// study names methods, about every limit, all pairs of limits and any of them. Stops early, with what there is, if `progress` says so.
 ///
@@ -64,15 +99,8 @@ pub struct MostLikelyBreach {
 pub fn rare_events(study: &Study, record: &Record, progress: &Progress) -> Result<Vec<RareEvent>> {
     let limits = study.limits.len();
     let counts = record.counts();
-    let chosen = study.reliability.methods.as_deref();
-    let methods: Vec<&str> = match chosen {
-        Some(methods) => methods.iter().map(String::as_str).collect(),
-        None => DEFAULT_METHODS.to_vec(),
-    };
-    let each = (0..limits).map(Event::Limit);
-    let pairs = (0..limits).flat_map(|i| (i + 1..limits).map(move |j| Event::Both(i, j)));
-    let pairs = pairs.filter(|_| chosen.is_some());
-    let events = each.chain(pairs).chain((limits > 1).then_some(Event::Any)).filter(|&event| {
+    let methods = methods(study);
+    let events = candidates(study).into_iter().filter(|&event| {
         let seen = seen(counts, event);
         // Of the limit that no study states, a search is worth it where samples showed that it can be breached.
         let implied = |members: Vec<usize>| members.iter().any(|&i| study.limits[i].implied);
@@ -80,7 +108,7 @@ pub fn rare_events(study: &Study, record: &Record, progress: &Progress) -> Resul
         if unstated && seen.is_none_or(|seen| seen.breaches == 0) {
             return false;
         }
-        chosen.is_some() || seen.is_some_and(|seen| seen.breaches < FEW_BREACHES)
+        study.reliability.methods.is_some() || seen.is_some_and(|seen| seen.breaches < FEW_BREACHES)
     });
     let state = DescentLimitState::new(study, progress);
     let mut found = Vec::new();

@@ -4,11 +4,10 @@ use super::calibrate_arguments::CalibrateArguments;
 use super::command_line::quoted;
 use super::figure_files::write_report_figures;
 use super::output::{say, say_error, say_notes};
-use super::watch::{Watch, stop_on_interrupt};
+use super::watch::{carry_out, interruptible};
 use super::{Ending, done};
 use crate::campaign::calibration::duplicates::refuse_twice;
 use crate::campaign::calibration::{self, Calibration, Channel, Options, is_hardware};
-use crate::campaign::{self, Progress};
 use crate::descent::driven::Drive;
 use crate::error::{Error, Result};
 use crate::findings::calibration::{self as findings, CalibrationFinding};
@@ -18,7 +17,6 @@ use crate::study::measured_run::Acceptance;
 use crate::study::{MeasuredRun, Study, sha256};
 use crate::units;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// The findings as one tree.
 const FINDINGS: &str = "findings.json";
@@ -67,13 +65,11 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
             )));
         }
     }
-    let progress = Arc::new(Progress::default());
-    stop_on_interrupt(&progress)?;
-    let found = campaign::with_threads(arguments.threads.asked(), || {
-        let _watch =
-            Watch::start(&progress, calibration::about(&options, &calibrated), "calibrating");
-        calibration::calibrate(&study, &calibrated, &unseen, &options, &progress)
-    })??;
+    let progress = interruptible()?;
+    let found = carry_out(&progress, arguments.threads.asked(), |progress| {
+        progress.begin("calibrating", calibration::about(&options, &calibrated));
+        calibration::calibrate(&study, &calibrated, &unseen, &options, progress)
+    })?;
     let Some(found) = found else {
         say_error("stopped before the posterior was found: nothing is written");
         return Ok(Ending::Interrupted);

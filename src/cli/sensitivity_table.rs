@@ -1,7 +1,7 @@
 //! Every measure of sensitivity as one long Parquet table.
 
+use crate::analysis::Findings;
 use crate::error::Result;
-use crate::findings::Findings;
 use crate::numerics::interval::Estimate;
 use crate::store::{Field, Parentage, write_table};
 use std::path::Path;

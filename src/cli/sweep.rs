@@ -4,17 +4,15 @@ use super::arguments::SweepArguments;
 use super::command_line::quoted;
 use super::figure_files::write_report_figures;
 use super::output::{say, say_error, say_notes};
-use super::watch::{Watch, stop_on_interrupt};
+use super::watch::{carry_out, interruptible};
 use super::{Ending, done, parentage};
 use crate::campaign::sweep::{Grid, Meaning, SweptPath, check, run_sweep, usual_samples};
-use crate::campaign::{self, Progress};
 use crate::error::{Error, Result};
 use crate::findings::sweep::{SweepFinding, sweep as findings};
 use crate::render;
 use crate::store::{Contents, Field, ResultDirectory, write_table};
 use crate::study::{Over, Study, design_path, option_error};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// The long table.
 const TABLE: &str = "sweep.parquet";
@@ -45,18 +43,14 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Ending> {
     };
     let directory = ResultDirectory::open(&directory, contents)?;
     say_notes(&study);
-    let progress = Arc::new(Progress::default());
-    stop_on_interrupt(&progress)?;
-    let finding = campaign::with_threads(arguments.threads.asked(), || {
-        let descents = samples.unwrap_or(0) * grid.cells().len() as u64;
-        let watch = Watch::start(&progress, descents, "sweeping");
-        let cells = run_sweep(&study, &grid, samples, &progress)?;
-        drop(watch);
-        match cells {
-            Some(cells) => findings(&study, &grid, &cells, samples, command(arguments), &progress),
+    let progress = interruptible()?;
+    let finding = carry_out(&progress, arguments.threads.asked(), |progress| {
+        progress.begin("sweeping", samples.unwrap_or(0) * grid.cells().len() as u64);
+        match run_sweep(&study, &grid, samples, progress)? {
+            Some(cells) => findings(&study, &grid, &cells, samples, command(arguments), progress),
             None => Ok(None),
         }
-    })??;
+    })?;
     let Some(finding) = finding else {
         say_error("stopped before the sweep was complete; nothing was written");
         return Ok(Ending::Interrupted);

@@ -1,7 +1,7 @@
 //! The trade of tolerances, the Shapley effects and the go/no-go charts as Parquet tables.
 
+use crate::analysis::Findings;
 use crate::error::Result;
-use crate::findings::Findings;
 use crate::numerics::interval::Estimate;
 use crate::store::{Field, Parentage, write_table};
 use std::path::Path;

@@ -59,7 +59,7 @@ pub struct MovedInput {
 }
 
 /// What a calibration changed; nothing for a study without a calibrated card.
-pub(super) fn calibrated(
+pub(crate) fn calibrated(
     study: &Study,
     outcomes: Option<&CalibratedOutcomes>,
     after: &EpistemicFinding,

@@ -81,7 +81,7 @@ pub struct VerdictFinding {
 /// The verdict of a study's samples.
 ///
 /// Without a requirement the headline says what the table says of any breach, interval included.
-pub(super) fn verdict(
+pub(crate) fn verdict(
     study: &Study,
     record: &Record,
     probabilities: &[ProbabilityFinding],

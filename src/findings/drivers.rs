@@ -2,7 +2,7 @@
 
 use super::CONFIDENCE;
 use super::probabilities::breach_of;
-use crate::campaign::{PickFreezeOutcomes, in_parallel};
+use crate::campaign::{Found, PickFreezeOutcomes, in_parallel};
 use crate::descent::OutcomeQuantity;
 use crate::error::Result;
 use crate::sensitivity::bootstrap::Resampling;
@@ -74,15 +74,15 @@ pub struct FactorFinding {
 }
 
 /// The drivers of a study, or why there are none.
-pub(super) fn drivers(
+pub(crate) fn drivers(
     study: &Study,
-    pick_freeze: &std::result::Result<PickFreezeOutcomes, String>,
+    pick_freeze: &Found<PickFreezeOutcomes>,
 ) -> Result<DriversFinding> {
     let design = match pick_freeze {
         Ok(design) => design,
         Err(why) => {
             return Ok(DriversFinding {
-                none: Some(why.clone()),
+                none: Some(why.to_string()),
                 base_samples: 0,
                 descents: 0,
                 faults: 0,

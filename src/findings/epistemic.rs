@@ -3,7 +3,7 @@
 use super::{CONFIDENCE, probabilities::title_of};
 use crate::campaign::common_numbers::Event;
 use crate::campaign::epistemic::EpistemicOutcomes;
-use crate::campaign::in_parallel;
+use crate::campaign::{Found, in_parallel};
 use crate::error::Result;
 use crate::numerics::interval::Estimate;
 use crate::reliability::nested::{NestedEvent, band, central, shares};
@@ -100,13 +100,13 @@ pub struct ProbabilityBox {
 }
 
 /// What varies and what is not known, or why there is nothing to say.
-pub(super) fn epistemic(
+pub(crate) fn epistemic(
     study: &Study,
-    outcomes: &std::result::Result<EpistemicOutcomes, String>,
+    outcomes: &Found<EpistemicOutcomes>,
 ) -> Result<EpistemicFinding> {
     let outcomes = match outcomes {
         Ok(outcomes) => outcomes,
-        Err(why) => return Ok(nothing(why)),
+        Err(why) => return Ok(nothing(why.to_string())),
     };
     let events: Vec<Event> =
         (0..study.limits.len()).map(Event::Limit).chain([Event::Any]).collect();
@@ -133,9 +133,9 @@ pub(super) fn epistemic(
     })
 }
 
-fn nothing(why: &str) -> EpistemicFinding {
+fn nothing(why: String) -> EpistemicFinding {
     EpistemicFinding {
-        none: Some(why.to_owned()),
+        none: Some(why),
         unknown: Vec::new(),
         varying: Vec::new(),
         sets: 0,

@@ -1,6 +1,7 @@
 //! What the values that are taken as exact do to P(any breach).
 
 use super::trade::Paired;
+use crate::campaign::Found;
 use crate::campaign::common_numbers::Event;
 use crate::campaign::exact::{ExactOutcomes, KELVIN, SHARE};
 use crate::error::Result;
@@ -49,15 +50,12 @@ fn size(change: &Estimate) -> f64 {
 }
 
 /// The exact values of a study.
-pub(super) fn exact(
-    study: &Study,
-    outcomes: &std::result::Result<ExactOutcomes, String>,
-) -> Result<ExactFinding> {
+pub(crate) fn exact(study: &Study, outcomes: &Found<ExactOutcomes>) -> Result<ExactFinding> {
     let outcomes = match outcomes {
         Ok(outcomes) => outcomes,
         Err(why) => {
             return Ok(ExactFinding {
-                none: Some(why.clone()),
+                none: Some(why.to_string()),
                 samples: 0,
                 values: Vec::new(),
                 strongest: None,

@@ -29,7 +29,7 @@ pub struct InputFinding {
 }
 
 /// The uncertain parameters of a study.
-pub(super) fn inputs(study: &Study) -> Vec<InputFinding> {
+pub(crate) fn inputs(study: &Study) -> Vec<InputFinding> {
     study
         .resolved()
         .into_iter()
@@ -71,7 +71,7 @@ pub struct CorrelationFinding {
 }
 
 /// The correlations of a study's inputs.
-pub(super) fn correlations(study: &Study) -> Vec<CorrelationFinding> {
+pub(crate) fn correlations(study: &Study) -> Vec<CorrelationFinding> {
     let found = study.resolved_correlations().into_iter();
     let finding = found.map(|correlation| CorrelationFinding {
         inputs: correlation.inputs(),
@@ -86,7 +86,7 @@ pub(super) fn correlations(study: &Study) -> Vec<CorrelationFinding> {
 }
 
 /// How the inputs depend on each other, after the words of a design of experiment; empty where they do not.
-pub(super) fn dependence(study: &Study) -> String {
+pub(crate) fn dependence(study: &Study) -> String {
     let pairs = study.correlations.len();
     let together: usize = study.drawn_together.iter().map(|one| one.inputs.len()).sum();
     let correlated = match pairs {

@@ -3,6 +3,7 @@
 
 use super::CONFIDENCE;
 use super::trade::proportion;
+use crate::campaign::Found;
 use crate::campaign::common_numbers::{Breaches, Event};
 use crate::campaign::known::{Chart, INNER, KnownOutcomes, Map, Second, Stage};
 use crate::error::Result;
@@ -122,15 +123,12 @@ pub enum GoAnswer {
 const SHARES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 
 /// What becomes known when, or why there is nothing to say.
-pub(super) fn known(
-    study: &Study,
-    outcomes: &std::result::Result<KnownOutcomes, String>,
-) -> Result<KnownFinding> {
+pub(crate) fn known(study: &Study, outcomes: &Found<KnownOutcomes>) -> Result<KnownFinding> {
     let outcomes = match outcomes {
         Ok(outcomes) => outcomes,
         Err(why) => {
             return Ok(KnownFinding {
-                none: Some(why.clone()),
+                none: Some(why.to_string()),
                 stages: Vec::new(),
                 charts: Vec::new(),
                 map: None,

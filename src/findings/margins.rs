@@ -35,7 +35,7 @@ pub struct MarginQuantile {
 }
 
 /// The margins of every limit. A share p keeps at least minus the p-quantile of the exceedance.
-pub(super) fn margins(study: &Study, record: &Record) -> Result<Vec<MarginFinding>> {
+pub(crate) fn margins(study: &Study, record: &Record) -> Result<Vec<MarginFinding>> {
     // With a replicated design the order statistics' intervals do not apply.
     let replicated = !record.by_replicate().is_empty();
     let limits = study.stated_limits();

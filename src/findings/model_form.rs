@@ -2,6 +2,7 @@
 
 use super::demonstration::VerdictWord;
 use super::trade::Paired;
+use crate::campaign::Found;
 use crate::campaign::common_numbers::Event;
 use crate::campaign::model_form::{Form, ModelFormOutcomes};
 use crate::descent::{Model, OutcomeQuantity};
@@ -47,9 +48,9 @@ pub struct FormFinding {
 ///
 /// # Errors
 /// If a statistic refuses the counts.
-pub(super) fn model_form(
+pub(crate) fn model_form(
     study: &Study,
-    outcomes: &std::result::Result<ModelFormOutcomes, String>,
+    outcomes: &Found<ModelFormOutcomes>,
 ) -> Result<ModelFormFinding> {
     let found = match outcomes {
         Ok(found) => found,
@@ -59,7 +60,7 @@ pub(super) fn model_form(
                 forms: Vec::new(),
                 difference: None,
                 verdict_depends: None,
-                none: Some(why.clone()),
+                none: Some(why.to_string()),
             });
         }
     };

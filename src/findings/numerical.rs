@@ -44,7 +44,7 @@ pub struct NumericalLimit {
 }
 
 /// The measurement of a run.
-pub(super) fn numerical(
+pub(crate) fn numerical(
     study: &Study,
     record: &Record,
     verification: &Verification,
@@ -158,7 +158,7 @@ fn statement(study: &Study, verification: &Verification, limits: &[NumericalLimi
 ///
 /// # Errors
 /// If the study's confidence is none.
-pub(super) fn heed(
+pub(crate) fn heed(
     study: &Study,
     record: &Record,
     verification: &Verification,

@@ -71,7 +71,7 @@ pub(super) fn breach_of(limit: &Limit) -> String {
 }
 
 /// Every event of a study: each limit, any of them, each pair.
-pub(super) fn probabilities(study: &Study, record: &Record) -> Result<Vec<ProbabilityFinding>> {
+pub(crate) fn probabilities(study: &Study, record: &Record) -> Result<Vec<ProbabilityFinding>> {
     let mut found = Vec::new();
     let count = study.limits.len();
     let title = |i: usize| title_of(&study.limits[i]);

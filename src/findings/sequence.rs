@@ -27,7 +27,7 @@ pub struct StoppingFinding {
 }
 
 /// Why the sampling ended, if that was decided while sampling.
-pub(super) fn stopping(
+pub(crate) fn stopping(
     study: &Study,
     samples: u64,
     reason: Option<Stop>,

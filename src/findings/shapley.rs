@@ -3,8 +3,8 @@
 use super::CONFIDENCE;
 use super::drivers::too_few;
 use crate::campaign::common_numbers::Event;
-use crate::campaign::in_parallel;
 use crate::campaign::shapley::ShapleyOutcomes;
+use crate::campaign::{Found, in_parallel};
 use crate::descent::OutcomeQuantity;
 use crate::error::Result;
 use crate::numerics::interval::Estimate;
@@ -40,14 +40,11 @@ pub struct ShapleyOutput {
 }
 
 /// The Shapley effects of a study, or why there are none.
-pub(super) fn shapley(
-    study: &Study,
-    outcomes: &std::result::Result<ShapleyOutcomes, String>,
-) -> Result<ShapleyFinding> {
+pub(crate) fn shapley(study: &Study, outcomes: &Found<ShapleyOutcomes>) -> Result<ShapleyFinding> {
     let outcomes = match outcomes {
         Ok(outcomes) => outcomes,
         Err(why) => {
-            let none = Some(why.clone());
+            let none = Some(why.to_string());
             return Ok(ShapleyFinding { none, walks: 0, descents: 0, outputs: Vec::new() });
         }
     };

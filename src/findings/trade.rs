@@ -5,8 +5,8 @@ use super::CONFIDENCE;
 use super::derivatives::{DerivativeFinding, derivatives};
 use super::design_value::{DesignValueFinding, design_value};
 use crate::campaign::common_numbers::{Breaches, Event};
-use crate::campaign::in_parallel;
 use crate::campaign::trade::{Curve, HEADLINES, Halved, Parameter, TradeOutcomes};
+use crate::campaign::{Found, in_parallel};
 use crate::error::Result;
 use crate::numerics::interval::{Earned, Estimate};
 use crate::reliability::paired::{PairedCounts, replicated_difference};
@@ -89,15 +89,12 @@ pub struct TradePoint {
 }
 
 /// The trade of a study, or why there is none.
-pub(super) fn trade(
-    study: &Study,
-    outcomes: &std::result::Result<TradeOutcomes<'_>, String>,
-) -> Result<TradeFinding> {
+pub(crate) fn trade(study: &Study, outcomes: &Found<TradeOutcomes<'_>>) -> Result<TradeFinding> {
     let outcomes = match outcomes {
         Ok(outcomes) => outcomes,
         Err(why) => {
             return Ok(TradeFinding {
-                none: Some(why.clone()),
+                none: Some(why.to_string()),
                 samples: 0,
                 base: None,
                 best: Vec::new(),

@@ -1,7 +1,8 @@
 //! The drivers in a reader's words.
 
 use super::figures_of_speech::{count, probability};
-use crate::findings::{CONFIDENCE, DriverOutput, FactorFinding, Findings};
+use crate::analysis::Findings;
+use crate::findings::{CONFIDENCE, DriverOutput, FactorFinding};
 use crate::numerics::interval::Estimate;
 use serde::Serialize;
 

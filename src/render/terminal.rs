@@ -3,7 +3,8 @@
 use super::sketch::sketches;
 use super::tables::table;
 use super::view::{Rare, RareRow, view};
-use crate::findings::{Findings, VerdictWord};
+use crate::analysis::Findings;
+use crate::findings::VerdictWord;
 
 /// Whether escape sequences are wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

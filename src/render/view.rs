@@ -12,10 +12,9 @@ use super::known_view::{Known, known};
 use super::measures_view::{Measures, measures};
 use super::model_form_view::{ModelFormView, model_form};
 use super::trade_view::{Shares, Trade, shares, trade};
+use crate::analysis::Findings;
 use crate::descent::OutcomeQuantity;
-use crate::findings::{
-    CONFIDENCE, Decision, EventKind, Findings, MarginFinding, RareFinding, VerdictWord,
-};
+use crate::findings::{CONFIDENCE, Decision, EventKind, MarginFinding, RareFinding, VerdictWord};
 use crate::units::number;
 use serde::Serialize;
 

@@ -37,7 +37,7 @@ pub struct FigureData {
 ///
 /// # Errors
 /// What the study's sampler refuses.
-pub(super) fn figures(
+pub(crate) fn figures(
     study: &Study,
     record: &Record,
     drivers: &DriversFinding,

@@ -1,5 +1,6 @@
 //! One index of every factor, side by side.
 
+use crate::campaign::Found;
 use crate::campaign::given_sample::GivenSample;
 use crate::campaign::screening::{ScreeningOutcomes, TRAJECTORIES};
 use crate::descent::OutcomeQuantity;
@@ -148,11 +149,11 @@ impl Serialize for IndexColumn {
 /// Mean magnitude of the elementary effects of every factor.
 pub(super) fn screened(
     sample: &GivenSample,
-    screening: &std::result::Result<ScreeningOutcomes, String>,
+    screening: &Found<ScreeningOutcomes>,
     quantity: OutcomeQuantity,
 ) -> Result<IndexColumn> {
     let effects = match screening {
-        Err(why) => Err(why.clone()),
+        Err(why) => Err(why.to_string()),
         Ok(found) => {
             let outcomes = found.outcomes.column(quantity as usize);
             Ok(found.screening.effects(outcomes, CONFIDENCE)?)

@@ -8,6 +8,7 @@ pub mod ranking;
 
 use super::drivers::DriversFinding;
 use super::shapley::ShapleyFinding;
+use crate::campaign::Found;
 use crate::campaign::given_sample::GivenSample;
 use crate::campaign::screening::{ScreeningOutcomes, Slopes};
 use crate::descent::OutcomeQuantity;
@@ -61,10 +62,10 @@ pub struct MeasuredOutput {
 }
 
 /// The measures of a study, or why there are none.
-pub(super) fn measures(
+pub(crate) fn measures(
     study: &Study,
-    given: &std::result::Result<GivenSample, String>,
-    screening: &std::result::Result<ScreeningOutcomes, String>,
+    given: &Found<GivenSample>,
+    screening: &Found<ScreeningOutcomes>,
     slopes: &Slopes,
     drivers: &DriversFinding,
     shapley: &ShapleyFinding,
@@ -74,7 +75,7 @@ pub(super) fn measures(
         Ok(sample) => sample,
         Err(why) => {
             return Ok(MeasuresFinding {
-                none: Some(why.clone()),
+                none: Some(why.to_string()),
                 samples: 0,
                 factors: Vec::new(),
                 outputs: Vec::new(),
