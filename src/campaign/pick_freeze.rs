@@ -52,11 +52,7 @@ pub fn factors(study: &Study) -> Vec<Factor> {
         }
     }
     let groups = groups.into_iter().filter(|(_, columns)| columns.len() > 1);
-    let grouped = groups.map(|(name, columns)| {
-        let drawn = columns.iter().any(|&k| study.joint.sample_of(k).is_some());
-        let name = if drawn { name.to_owned() } else { format!("{name} (all)") };
-        Factor { name, columns }
-    });
+    let grouped = groups.map(|(name, columns)| Factor { name: name.to_owned(), columns });
     single.chain(grouped).collect()
 }
 
@@ -84,8 +80,7 @@ fn run_pick_freeze(study: &Study, progress: &Progress) -> Result<Option<PickFree
     let inputs = study.inputs.len();
     let plan = Plan::new(rows as usize, inputs, factors(study))?;
     let place = |name: &String| {
-        let is = |factor: &Factor| factor.name.trim_end_matches(" (all)") == *name;
-        plan.factors().iter().rposition(is)
+        plan.factors().iter().rposition(|factor| factor.name == *name)
     };
     let pairs = study.sensitivity.pairs.iter();
     let pairs: Vec<(usize, usize)> =

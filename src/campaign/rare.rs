@@ -22,12 +22,13 @@ use crate::reliability::sorm::{SormOptions, sorm};
 use crate::reliability::subset::{SubsetOptions, subset_simulation};
 use crate::reliability::system::system_form;
 use crate::sampling::Design;
-use crate::study::Study;
+use crate::study::{RareMethod, Study};
 
 /// Below this many breaches the samples alone say little, and other methods are asked as well.
 pub const FEW_BREACHES: u64 = 50;
 /// The methods that are asked unless the study names some.
-const DEFAULT_METHODS: [&str; 2] = ["subset-simulation", "importance-sampling"];
+const DEFAULT_METHODS: [RareMethod; 2] =
+    [RareMethod::SubsetSimulation, RareMethod::ImportanceSampling];
 /// Risk at which methods that are all right are said to disagree.
 const FAMILY_RISK: f64 = 0.01;
 
@@ -75,11 +76,8 @@ impl Analysis<'_> for Vec<RareEvent> {
 }
 
 /// The methods that are asked.
-fn methods(study: &Study) -> Vec<&str> {
-    match study.reliability.methods.as_deref() {
-        Some(methods) => methods.iter().map(String::as_str).collect(),
-        None => DEFAULT_METHODS.to_vec(),
-    }
+fn methods(study: &Study) -> &[RareMethod] {
+    study.reliability.methods.as_deref().unwrap_or(&DEFAULT_METHODS)
 }
 
 /// The events that may be asked about: every limit, if the study names methods all pairs of limits, and any of them.
@@ -116,18 +114,22 @@ pub fn rare_events(study: &Study, record: &Record, progress: &Progress) -> Resul
         if progress.stopping() || methods.is_empty() {
             break;
         }
-        found.push(rare_event(study, record, &state, event, &methods)?);
+        found.push(rare_event(study, record, &state, event, methods)?);
     }
     Ok(found)
 }
 
 /// The method, if it goes by slopes of the margins.
-fn needs_slopes(method: &str) -> Option<Method> {
+fn needs_slopes(method: RareMethod) -> Option<Method> {
     match method {
-        "form" => Some(Method::Form),
-        "sorm" => Some(Method::SormBreitung),
-        "line-sampling" => Some(Method::LineSampling),
-        _ => None,
+        RareMethod::Form => Some(Method::Form),
+        RareMethod::Sorm => Some(Method::SormBreitung),
+        RareMethod::LineSampling => Some(Method::LineSampling),
+        RareMethod::Crude
+        | RareMethod::ImportanceSampling
+        | RareMethod::SubsetSimulation
+        | RareMethod::DirectionalSampling
+        | RareMethod::CrossEntropy => None,
     }
 }
 
@@ -163,7 +165,7 @@ fn rare_event(
     record: &Record,
     state: &DescentLimitState,
     event: Event,
-    methods: &[&str],
+    methods: &[RareMethod],
 ) -> Result<RareEvent> {
     let seed = study.sampling.seed;
     let search = SearchOptions { seed, ..SearchOptions::default() };
@@ -187,7 +189,7 @@ fn rare_event(
             continue;
         }
         match method {
-            "form" => {
+            RareMethod::Form => {
                 let (estimate, found) = match event {
                     Event::Limit(i) => form(state, i, &search)?,
                     _ => system_form(state, event, &search)?,
@@ -195,7 +197,7 @@ fn rare_event(
                 estimates.push(estimate);
                 points.get_or_insert(found);
             }
-            "sorm" => match event {
+            RareMethod::Sorm => match event {
                 Event::Limit(i) => {
                     let options = SormOptions { search: search.clone(), ..SormOptions::default() };
                     let (second, found) = sorm(state, i, &options)?;
@@ -208,7 +210,7 @@ fn rare_event(
                     "SORM has no formula for several limits",
                 )),
             },
-            "importance-sampling" => {
+            RareMethod::ImportanceSampling => {
                 let options = ImportanceOptions {
                     seed,
                     search: search.clone(),
@@ -218,25 +220,25 @@ fn rare_event(
                 estimates.push(estimate);
                 points.get_or_insert(found);
             }
-            "subset-simulation" => {
+            RareMethod::SubsetSimulation => {
                 let options = SubsetOptions { seed, ..SubsetOptions::default() };
                 estimates.push(subset_simulation(state, event, &options)?);
             }
-            "line-sampling" => {
+            RareMethod::LineSampling => {
                 let options =
                     LineOptions { seed, search: search.clone(), ..LineOptions::default() };
                 estimates.push(line_sampling(state, event, &options)?);
             }
-            "directional-sampling" => {
+            RareMethod::DirectionalSampling => {
                 let options = DirectionalOptions { seed, ..DirectionalOptions::default() };
                 estimates.push(directional_sampling(state, event, &options)?);
             }
-            "cross-entropy" => {
+            RareMethod::CrossEntropy => {
                 let options = CrossEntropyOptions { seed, ..CrossEntropyOptions::default() };
                 estimates.push(cross_entropy(state, event, &options)?);
             }
-            // "crude" is the samples themselves, which are there already.
-            _ => {}
+            // The samples themselves are there already.
+            RareMethod::Crude => {}
         }
     }
     let most_likely = points.as_ref().and_then(|found| {

@@ -44,14 +44,7 @@ pub fn trade_factors(study: &Study) -> Vec<Factor> {
                 && factor.columns.iter().all(|column| other.columns.contains(column))
         })
     };
-    let mut kept: Vec<Factor> = all
-        .iter()
-        .filter(|factor| !member(factor))
-        .map(|factor| Factor {
-            name: factor.name.trim_end_matches(" (all)").to_owned(),
-            columns: factor.columns.clone(),
-        })
-        .collect();
+    let mut kept: Vec<Factor> = all.iter().filter(|factor| !member(factor)).cloned().collect();
     kept.sort_by_key(|factor| factor.columns.first().copied());
     kept
 }

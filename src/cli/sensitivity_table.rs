@@ -17,7 +17,7 @@ const WALKS: &str = "walks of a design of their own";
 struct Row<'f> {
     method: &'static str,
     index: &'static str,
-    output: &'f str,
+    output: String,
     factor: String,
     inputs: usize,
     samples: usize,
@@ -55,7 +55,7 @@ pub(super) fn write_sensitivity(
     let columns = vec![
         ("method".to_owned(), text(&|row| Some(row.method.to_owned()))),
         ("index".to_owned(), text(&|row| Some(row.index.to_owned()))),
-        ("output".to_owned(), text(&|row| Some(row.output.to_owned()))),
+        ("output".to_owned(), text(&|row| Some(row.output.clone()))),
         ("factor".to_owned(), text(&|row| Some(row.factor.clone()))),
         ("inputs".to_owned(), count(&|row| row.inputs)),
         ("samples".to_owned(), count(&|row| row.samples)),
@@ -78,7 +78,7 @@ fn pick_freeze(findings: &Findings) -> Vec<Row<'_>> {
             |index, factor: String, inputs, estimate: &Estimate, note: &Option<String>, left| Row {
                 method: PICK_FREEZE,
                 index,
-                output: &output.name,
+                output: output.name.to_string(),
                 factor,
                 inputs,
                 samples: drivers.base_samples,
@@ -92,7 +92,7 @@ fn pick_freeze(findings: &Findings) -> Vec<Row<'_>> {
             for (index, estimate) in [("first", &found.first), ("total", &found.total)] {
                 let beyond = estimate.value.is_some_and(|value| !(0.0..=1.0).contains(&value));
                 let note = found.explanation.clone().filter(|_| beyond);
-                let name = factor.name.clone();
+                let name = factor.name.to_string();
                 rows.push(row(index, name, factor.inputs, estimate, &note, found.rows_left_out));
             }
         }
@@ -120,15 +120,14 @@ fn pick_freeze(findings: &Findings) -> Vec<Row<'_>> {
 fn shares(findings: &Findings) -> impl Iterator<Item = Row<'_>> {
     let shapley = &findings.shapley;
     let inputs = |name: &str| {
-        let of = |known: &str| known.trim_end_matches(" (all)") == name;
-        let known = findings.measures.factors.iter().find(|factor| of(&factor.name));
+        let known = findings.measures.factors.iter().find(|factor| factor.name.name == name);
         known.map_or(1, |factor| factor.inputs)
     };
     shapley.outputs.iter().flat_map(move |output| {
         output.effects.iter().map(move |(factor, effect)| Row {
             method: WALKS,
             index: "shapley",
-            output: &output.name,
+            output: output.name.to_string(),
             factor: factor.clone(),
             inputs: inputs(factor),
             samples: shapley.walks,
@@ -148,8 +147,8 @@ fn measured(findings: &Findings) -> impl Iterator<Item = Row<'_>> {
                 move |(k, (factor, estimate))| Row {
                     method: column.method,
                     index: column.index,
-                    output: &output.name,
-                    factor: factor.name.clone(),
+                    output: output.name.to_string(),
+                    factor: factor.name.to_string(),
                     inputs: factor.inputs,
                     samples: column.samples,
                     estimate: estimate.clone(),
@@ -175,7 +174,7 @@ fn derivatives(findings: &Findings) -> Vec<Row<'_>> {
                 rows.push(Row {
                     method: "gradient kernel, SI per SI",
                     index,
-                    output: outcome.name,
+                    output: outcome.name.to_owned(),
                     factor: target.path.clone(),
                     inputs: target.inputs,
                     samples: 0,

@@ -1,6 +1,7 @@
 //! Every factor's fair share of the variance, also where inputs are correlated.
 
 use super::CONFIDENCE;
+use super::named::Output;
 use super::drivers::too_few;
 use crate::campaign::common_numbers::Event;
 use crate::campaign::shapley::ShapleyOutcomes;
@@ -27,8 +28,8 @@ pub struct ShapleyFinding {
 /// The Shapley effects of one output.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ShapleyOutput {
-    /// The output: an outcome's name, or `breach.any`.
-    pub name: String,
+    /// The output: an outcome, or any breach.
+    pub name: Output,
     /// Variance of the output.
     pub variance: Option<f64>,
     /// Why the effects on a breach are not to be read: too few breaches, or too few descents without one.
@@ -58,9 +59,9 @@ pub(crate) fn shapley(study: &Study, outcomes: &Found<ShapleyOutcomes>) -> Resul
         let (name, values) = match output {
             Some(quantity) => {
                 let column = outcomes.outcomes.column(*quantity as usize);
-                (quantity.name().to_owned(), column.to_vec())
+                (Output::Outcome(*quantity), column.to_vec())
             }
-            None => ("breach.any".to_owned(), any_breach(study, outcomes)),
+            None => (Output::AnyBreach, any_breach(study, outcomes)),
         };
         let found = outcomes.walks.effects(&values, CONFIDENCE)?;
         let names = outcomes.factors.iter().map(|factor| factor.name.clone());

@@ -139,7 +139,7 @@ fn rare(events: &[Rare], interval_header: &str) -> String {
         )));
     }
     let mut text = parts.join("\n");
-    for event in events.iter().filter(|event| event.agreement.starts_with("AGREEMENT")) {
+    for event in events.iter().filter(|event| event.disagree) {
         text += &format!("\n{}: {}", event.title, event.agreement);
     }
     text

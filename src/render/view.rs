@@ -14,7 +14,9 @@ use super::model_form_view::{ModelFormView, model_form};
 use super::trade_view::{Shares, Trade, shares, trade};
 use crate::analysis::Findings;
 use crate::descent::OutcomeQuantity;
-use crate::findings::{CONFIDENCE, Decision, EventKind, MarginFinding, RareFinding, VerdictWord};
+use crate::findings::{
+    CONFIDENCE, Decision, EventKind, MarginFinding, Output, RareFinding, VerdictWord,
+};
 use crate::units::number;
 use serde::Serialize;
 
@@ -84,6 +86,8 @@ pub(super) struct Rare {
     /// Which methods have no interval, and why; empty if all have one.
     pub without_interval: String,
     pub agreement: String,
+    /// Whether methods differ by more than their errors allow.
+    pub disagree: bool,
     pub story: Option<String>,
 }
 
@@ -250,8 +254,7 @@ fn verdict(findings: &Findings) -> Verdict {
             .outputs
             .iter()
             .find(|output| {
-                output.breach
-                    && output.name.strip_prefix("breach.") == p.limits.first().map(String::as_str)
+                matches!(&output.name, Output::Breach(limit) if Some(limit) == p.limits.first())
             })
             .and_then(|output| ranked(output).into_iter().next())
             .and_then(|factor| Some((factor, factor.indices.total.value?)));
@@ -345,6 +348,7 @@ fn rare(finding: &RareFinding) -> Rare {
             .map(|(k, _)| k),
         without_interval: finding.without_interval.join(" "),
         agreement: finding.agreement_statement.clone(),
+        disagree: finding.agreement.agrees == Some(false),
         story: finding.design_point.as_ref().map(|point| point.statement.clone()),
     }
 }

@@ -7,11 +7,11 @@ pub mod local;
 pub mod ranking;
 
 use super::drivers::DriversFinding;
+use super::named::{FactorName, Output};
 use super::shapley::ShapleyFinding;
 use crate::campaign::Found;
 use crate::campaign::given_sample::GivenSample;
 use crate::campaign::screening::{ScreeningOutcomes, Slopes};
-use crate::descent::OutcomeQuantity;
 use crate::error::Result;
 use crate::study::Study;
 use local::LocalFinding;
@@ -41,7 +41,7 @@ pub struct MeasuresFinding {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeasuredFactor {
     /// Path of the input, or name of the group.
-    pub name: String,
+    pub name: FactorName,
     /// How many inputs it is.
     pub inputs: usize,
     /// Whether it belongs to a group that is measured as one.
@@ -51,8 +51,8 @@ pub struct MeasuredFactor {
 /// The measures of one output.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeasuredOutput {
-    /// The output: an outcome's name, `breach.time`, `breach.any`.
-    pub name: String,
+    /// The output.
+    pub name: Output,
     /// The output in words.
     pub title: String,
     /// Whether it is a breach.
@@ -94,14 +94,14 @@ pub(crate) fn measures(
         .factors
         .iter()
         .map(|factor| MeasuredFactor {
-            name: factor.name.clone(),
+            name: FactorName::of(study, factor),
             inputs: factor.columns.len(),
             grouped: grouped(&factor.columns),
         })
         .collect();
     let mut outputs = given::outputs(study, sample)?;
-    for output in outputs.iter_mut().filter(|output| !output.breach) {
-        let Some(quantity) = OutcomeQuantity::from_name(&output.name) else { continue };
+    for output in &mut outputs {
+        let Output::Outcome(quantity) = output.name else { continue };
         output.indices.push(index::screened(sample, screening, quantity)?);
         output.indices.push(local::scaled(study, sample, slopes, quantity));
     }

@@ -4,9 +4,10 @@ use super::{IndexColumn, MeasuredFactor, MeasuredOutput};
 use crate::campaign::common_numbers::Event;
 use crate::campaign::given_sample::GivenSample;
 use crate::findings::drivers::DriversFinding;
+use crate::findings::named::{FactorName, Output};
 use crate::findings::shapley::ShapleyFinding;
 use crate::numerics::interval::Estimate;
-use crate::study::Study;
+use crate::study::{Limit, Study};
 use serde::Serialize;
 
 /// The measures that are compared, beside Sobol' total and Shapley: index, and its name in a table.
@@ -25,7 +26,7 @@ const COMPARED: [(&str, &str); 8] = [
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RankingFinding {
     /// The outcome, and in words.
-    pub output: String,
+    pub output: Output,
     /// See `output`.
     pub title: String,
     /// The measures.
@@ -68,8 +69,9 @@ pub(super) fn ranking(
     drivers: &DriversFinding,
     shapley: &ShapleyFinding,
 ) -> Option<RankingFinding> {
-    let share = |name: &str| {
-        let limits = study.limits.iter().enumerate().filter(|(_, l)| l.outcome.name() == name);
+    let share = |name: &Output| {
+        let is = |limit: &Limit| *name == Output::Outcome(limit.outcome);
+        let limits = study.limits.iter().enumerate().filter(|(_, limit)| is(limit));
         let counts = limits.map(|(i, _)| sample.breaches.count(Event::Limit(i)).breaches);
         counts.max().unwrap_or(0)
     };
@@ -80,19 +82,18 @@ pub(super) fn ranking(
         }
     }
     let places: Vec<usize> = (0..factors.len()).filter(|&f| !factors[f].grouped).collect();
-    let names: Vec<&str> = places.iter().map(|&f| factors[f].name.as_str()).collect();
+    let names: Vec<&FactorName> = places.iter().map(|&f| &factors[f].name).collect();
     let mut measures: Vec<Measure> = Vec::new();
     let pick_freeze = drivers.outputs.iter().find(|found| found.name == output.name);
     measures.extend(pick_freeze.and_then(|found| {
         of_estimates("Sobol' total", &names, |name| {
-            Some(&found.factors.iter().find(|factor| factor.name == name)?.indices.total)
+            Some(&found.factors.iter().find(|factor| factor.name == *name)?.indices.total)
         })
     }));
     let shares = shapley.outputs.iter().find(|found| found.name == output.name);
     measures.extend(shares.and_then(|found| {
         of_estimates("Shapley", &names, |name| {
-            let plain = name.trim_end_matches(" (all)");
-            Some(&found.effects.iter().find(|(factor, _)| factor == plain)?.1)
+            Some(&found.effects.iter().find(|(factor, _)| *factor == name.name)?.1)
         })
     }));
     for (index, name) in COMPARED {
@@ -119,7 +120,7 @@ pub(super) fn ranking(
         rows: order
             .iter()
             .map(|&f| RankRow {
-                factor: names[f].trim_end_matches(" (all)").to_owned(),
+                factor: names[f].name.clone(),
                 inputs: factors[places[f]].inputs,
                 ranks: ranks.iter().map(|ranks| ranks[f]).collect(),
                 distinct: measures.iter().map(|measure| measure.distinct[f]).collect(),
@@ -130,8 +131,8 @@ pub(super) fn ranking(
 
 fn of_estimates<'e>(
     name: &'static str,
-    factors: &[&str],
-    find: impl Fn(&str) -> Option<&'e Estimate>,
+    factors: &[&FactorName],
+    find: impl Fn(&FactorName) -> Option<&'e Estimate>,
 ) -> Option<Measure> {
     let estimates: Vec<&Estimate> =
         factors.iter().map(|factor| find(factor)).collect::<Option<_>>()?;
