@@ -79,9 +79,7 @@ fn run_pick_freeze(study: &Study, progress: &Progress) -> Result<Option<PickFree
     let rows = study.sensitivity.base_samples;
     let inputs = study.inputs.len();
     let plan = Plan::new(rows as usize, inputs, factors(study))?;
-    let place = |name: &String| {
-        plan.factors().iter().rposition(|factor| factor.name == *name)
-    };
+    let place = |name: &String| plan.factors().iter().rposition(|factor| factor.name == *name);
     let pairs = study.sensitivity.pairs.iter();
     let pairs: Vec<(usize, usize)> =
         pairs.filter_map(|(one, other)| Some((place(one)?, place(other)?))).collect();

@@ -168,11 +168,11 @@ fn rare_event(
     methods: &[RareMethod],
 ) -> Result<RareEvent> {
     let seed = study.sampling.seed;
-    let search = SearchOptions { seed, ..SearchOptions::default() };
+    let search = SearchOptions::seeded(seed);
     let mut estimates = Vec::new();
     let mut points: Option<DesignPoints> = None;
     if study.sampling.design == Design::MonteCarlo {
-        let confidence = ImportanceOptions::default().confidence;
+        let confidence = ImportanceOptions::seeded(seed).confidence;
         if let Some(seen) = seen(record.counts(), event) {
             let mut crude = crude::from_counts(event, seen, confidence)?;
             if study.sampling.stopping.is_some() {
@@ -199,7 +199,7 @@ fn rare_event(
             }
             RareMethod::Sorm => match event {
                 Event::Limit(i) => {
-                    let options = SormOptions { search: search.clone(), ..SormOptions::default() };
+                    let options = SormOptions::seeded(seed);
                     let (second, found) = sorm(state, i, &options)?;
                     estimates.extend([second.breitung, second.hohenbichler_rackwitz]);
                     points.get_or_insert(found);
@@ -211,30 +211,25 @@ fn rare_event(
                 )),
             },
             RareMethod::ImportanceSampling => {
-                let options = ImportanceOptions {
-                    seed,
-                    search: search.clone(),
-                    ..ImportanceOptions::default()
-                };
+                let options = ImportanceOptions::seeded(seed);
                 let (estimate, found) = importance_sampling(state, event, &options)?;
                 estimates.push(estimate);
                 points.get_or_insert(found);
             }
             RareMethod::SubsetSimulation => {
-                let options = SubsetOptions { seed, ..SubsetOptions::default() };
+                let options = SubsetOptions::seeded(seed);
                 estimates.push(subset_simulation(state, event, &options)?);
             }
             RareMethod::LineSampling => {
-                let options =
-                    LineOptions { seed, search: search.clone(), ..LineOptions::default() };
+                let options = LineOptions::seeded(seed);
                 estimates.push(line_sampling(state, event, &options)?);
             }
             RareMethod::DirectionalSampling => {
-                let options = DirectionalOptions { seed, ..DirectionalOptions::default() };
+                let options = DirectionalOptions::seeded(seed);
                 estimates.push(directional_sampling(state, event, &options)?);
             }
             RareMethod::CrossEntropy => {
-                let options = CrossEntropyOptions { seed, ..CrossEntropyOptions::default() };
+                let options = CrossEntropyOptions::seeded(seed);
                 estimates.push(cross_entropy(state, event, &options)?);
             }
             // The samples themselves are there already.

@@ -111,8 +111,7 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
 }
 
 fn options(arguments: &CalibrateArguments, study: &Study) -> Result<Options> {
-    let mut options = Options::default();
-    options.plan.seed = study.sampling.seed;
+    let mut options = Options::seeded(study.sampling.seed);
     if let Some(particles) = arguments.particles {
         options.plan.particles = particles as usize;
     }

@@ -1,7 +1,7 @@
 //! What drives the outcomes and the breaches: Sobol' indices from the pick-freeze design.
 
-use super::named::{FactorName, Output};
 use super::CONFIDENCE;
+use super::named::{FactorName, Output};
 use super::probabilities::breach_of;
 use crate::campaign::{Found, PickFreezeOutcomes, in_parallel};
 use crate::descent::OutcomeQuantity;

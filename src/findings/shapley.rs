@@ -1,8 +1,8 @@
 //! Every factor's fair share of the variance, also where inputs are correlated.
 
 use super::CONFIDENCE;
-use super::named::Output;
 use super::drivers::too_few;
+use super::named::Output;
 use crate::campaign::common_numbers::Event;
 use crate::campaign::shapley::ShapleyOutcomes;
 use crate::campaign::{Found, in_parallel};

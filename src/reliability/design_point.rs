@@ -32,8 +32,9 @@ pub struct SearchOptions {
     pub seed: u64,
 }
 
-impl Default for SearchOptions {
-    fn default() -> Self {
+impl SearchOptions {
+    /// The usual choices, with the seed of every stream.
+    pub fn seeded(seed: u64) -> Self {
         SearchOptions {
             directions: 16,
             start_radius: 3.0,
@@ -42,7 +43,7 @@ impl Default for SearchOptions {
             distance_tolerance: 1e-5,
             angle_tolerance: 1e-3,
             farthest: 12.0,
-            seed: 0,
+            seed,
         }
     }
 }

@@ -7,8 +7,8 @@ use super::until;
 use super::values::{check_surface, parameter_path, possible_range, written};
 use super::vocabulary as keys;
 use super::{
-    Limit, LimitKind, Numerics, RareMethod, ReliabilityPlan, Requirement, RequirementOf, SamplingPlan,
-    SensitivityPlan, Stated,
+    Limit, LimitKind, Numerics, RareMethod, ReliabilityPlan, Requirement, RequirementOf,
+    SamplingPlan, SensitivityPlan, Stated,
 };
 use crate::descent::outcome::TIME_LIMIT_S;
 use crate::descent::vector::{TOLERANCES, default_tolerance};

@@ -42,7 +42,7 @@ fn events() -> [(Event, f64); 5] {
 
 fn answers(event: Event, seed: u64) -> Vec<Estimate> {
     let state = &planes();
-    let search = SearchOptions { seed, ..SearchOptions::default() };
+    let search = SearchOptions { seed, ..SearchOptions::seeded(0) };
     let importance = ImportanceOptions { seed, search: search.clone(), ..Default::default() };
     let line = LineOptions { seed, search: search.clone(), ..Default::default() };
     vec![

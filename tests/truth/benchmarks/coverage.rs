@@ -27,7 +27,7 @@ pub const CSV_HEADER: &str = "method,problem,probability,first_seed,seeds,stated
 /// samples of each method.
 pub fn answer(method: Method, benchmark: &Benchmark, seed: u64, effort: f64) -> Estimate {
     let (state, event) = (&benchmark.limits, benchmark.event);
-    let search = SearchOptions { seed, ..SearchOptions::default() };
+    let search = SearchOptions { seed, ..SearchOptions::seeded(0) };
     let share = |samples: f64| (samples * effort) as u64;
     match method {
         Method::CrudeMonteCarlo => {
