@@ -1,6 +1,7 @@
 //! A study, run: its samples, every analysis of them, and what a report says of both. This is the program's sentence;
 //! the command line, a test and an example say it alike.
 
+pub mod compare;
 mod list;
 mod results;
 mod sampling;
@@ -10,7 +11,7 @@ use crate::error::Result;
 use crate::study::Study;
 
 pub use list::{Analyses, costs};
-pub use results::{Findings, gather};
+pub use results::{Findings, Unreadable, gather};
 pub use sampling::{Sampling, Sink, Source, sample};
 
 /// What a run takes beside its study.

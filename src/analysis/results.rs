@@ -19,10 +19,14 @@ use crate::findings::{
     sequence, shapley, this_brake, trade,
 };
 use crate::study::{RequirementOf, Study};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// The layout of the tree that this version writes and reads.
+const FORMAT: u32 = 1;
 
 /// The whole answer to a study.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Findings {
     /// Layout of this tree; a reader checks it before anything else.
     pub format: u32,
@@ -76,6 +80,34 @@ pub struct Findings {
     pub reproduction: ReproductionFinding,
 }
 
+/// Why no findings can be read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Unreadable {
+    /// It is no JSON, and why.
+    NotJson(String),
+    /// Another version wrote it.
+    OtherVersion(String),
+    /// It lacks something, or has something else in its place.
+    NotFindings(String),
+}
+
+impl Findings {
+    /// Reads the findings of a run of this version, the text of its `findings.json`. What that does not hold (the values
+    /// behind a scatter of samples) is empty.
+    ///
+    /// # Errors
+    /// If it is something else.
+    pub fn read(json: &[u8]) -> std::result::Result<Self, Unreadable> {
+        let tree: Value =
+            serde_json::from_slice(json).map_err(|why| Unreadable::NotJson(why.to_string()))?;
+        let version = tree["reproduction"]["version"].as_str().unwrap_or("an unknown version");
+        if tree["format"] != FORMAT || version != env!("CARGO_PKG_VERSION") {
+            return Err(Unreadable::OtherVersion(version.to_owned()));
+        }
+        serde_json::from_value(tree).map_err(|why| Unreadable::NotFindings(why.to_string()))
+    }
+}
+
 /// Computes the findings.
 ///
 /// # Errors
@@ -108,7 +140,7 @@ pub fn gather(
     }
     let rare = if_any(&analyses.rare)?.map_or(&[][..], |found| &found[..]);
     Ok(Findings {
-        format: 1,
+        format: FORMAT,
         title: study.title.clone(),
         verdict,
         stopping: sequence::stopping(study, record.counts().samples(), sampling.stop),

@@ -10,10 +10,10 @@ use crate::numerics::elementary::ln;
 use crate::numerics::interval::{Earned, Estimate};
 use crate::reliability::jackknife::delete_a_group;
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The best value of a design variable.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DesignValueFinding {
     /// Its path.
     pub path: String,

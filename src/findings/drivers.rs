@@ -10,10 +10,10 @@ use crate::sensitivity::bootstrap::Resampling;
 use crate::sensitivity::rare_events::FEWEST;
 use crate::sensitivity::sobol_indices::{FactorIndices, PairIndices, sobol_indices};
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The drivers of every outcome and every breach.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DriversFinding {
     /// Why there are none.
     pub none: Option<String>,
@@ -28,7 +28,7 @@ pub struct DriversFinding {
 }
 
 /// The drivers of one output.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DriverOutput {
     /// The output.
     pub name: Output,
@@ -49,7 +49,7 @@ pub struct DriverOutput {
 }
 
 /// What two factors do together to one output.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PairFinding {
     /// Paths of the inputs, or names of the groups.
     pub factors: (FactorName, FactorName),
@@ -61,7 +61,7 @@ pub struct PairFinding {
 }
 
 /// One factor's share in one output.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FactorFinding {
     /// Path of the input, or name of the group.
     pub name: FactorName,

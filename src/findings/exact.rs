@@ -6,12 +6,13 @@ use crate::campaign::common_numbers::Event;
 use crate::campaign::exact::{ExactOutcomes, KELVIN, SHARE};
 use crate::error::Result;
 use crate::numerics::interval::Estimate;
+use crate::numerics::words::{self, Word};
 use crate::study::Study;
 use crate::units::Quantity;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The values that no law varies, by what they do.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ExactFinding {
     /// Why it is not known what they do.
     pub none: Option<String>,
@@ -26,12 +27,13 @@ pub struct ExactFinding {
 }
 
 /// One value that is taken as exact.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ExactValue {
     /// Dotted path.
     pub path: String,
     /// What it is.
-    pub description: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub description: Word,
     /// Value, SI.
     pub value: f64,
     /// Value as an engineer reads it.

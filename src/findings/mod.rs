@@ -3,9 +3,6 @@
 
 pub mod calibrated;
 pub mod calibration;
-pub mod compare;
-mod compare_findings;
-mod compare_studies;
 pub(crate) mod demonstration;
 pub mod derivatives;
 pub mod design_value;
@@ -36,8 +33,9 @@ pub mod trade;
 
 use crate::campaign::Record;
 use crate::descent::{Fault, Outcome, OutcomeQuantity};
+use crate::numerics::words::{self, Word};
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 pub use calibrated::{CalibratedEvent, CalibratedFinding, MovedInput};
@@ -66,10 +64,11 @@ pub use trade::TradeFinding;
 pub const CONFIDENCE: f64 = 0.95;
 
 /// The spread of one outcome over the samples, SI.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OutcomeFinding {
     /// Name in study files.
-    pub name: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub name: Word,
     /// Parquet column, with the unit.
     pub column: String,
     /// Samples behind the numbers.
@@ -85,7 +84,7 @@ pub struct OutcomeFinding {
 }
 
 /// The nominal descent: every input at its nominal value.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NominalFinding {
     /// Whether the line ran out; `None` if the descent could not be computed.
     pub deployed: Option<bool>,
@@ -94,27 +93,31 @@ pub struct NominalFinding {
     /// Names of the limits that it breaches.
     pub breaches: Vec<String>,
     /// Why it could not be computed.
-    pub fault: Option<&'static str>,
+    #[serde(deserialize_with = "words::maybe")]
+    pub fault: Option<Word>,
 }
 
 /// Samples that are counted and shown apart.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ExceptionFinding {
     /// Samples that had not deployed at the time limit of a descent.
     pub not_deployed: u64,
     /// Samples that could not be computed.
     pub faulted: u64,
     /// Faults by kind.
-    pub faults: Vec<(&'static str, u64)>,
+    #[serde(deserialize_with = "words::with")]
+    pub faults: Vec<(Word, u64)>,
     /// The first faulted samples: index and kind.
-    pub first_faulted: Vec<(u64, &'static str)>,
+    #[serde(deserialize_with = "words::of")]
+    pub first_faulted: Vec<(u64, Word)>,
 }
 
 /// How the numbers were obtained.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MethodFinding {
     /// The model of the motion.
-    pub model: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub model: Word,
     /// The design of experiment in words.
     pub design: String,
     /// Descents in the main design.
@@ -128,10 +131,11 @@ pub struct MethodFinding {
 }
 
 /// What it takes to have the same numbers again.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ReproductionFinding {
     /// Version of this program.
-    pub version: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub version: Word,
     /// Seed of every stream.
     pub seed: u64,
     /// SHA-256 of the resolved study.

@@ -8,12 +8,13 @@ use crate::campaign::model_form::{Form, ModelFormOutcomes};
 use crate::descent::{Model, OutcomeQuantity};
 use crate::error::Result;
 use crate::numerics::interval::Estimate;
+use crate::numerics::words::{self, Word};
 use crate::reliability::demonstration::{Requirement, Verdict};
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The study's samples by either thermal model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModelFormFinding {
     /// Samples of either form: the study's first, the same for both.
     pub samples: u64,
@@ -28,10 +29,11 @@ pub struct ModelFormFinding {
 }
 
 /// One form of the model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FormFinding {
     /// Name in study files.
-    pub model: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub model: Word,
     /// Whether temperature is resolved over the radius and across the film.
     pub detailed: bool,
     /// P(any breach).
@@ -39,7 +41,8 @@ pub struct FormFinding {
     /// What these samples alone say of the requirement; `None` without one, or where samples are not independent.
     pub verdict: Option<VerdictWord>,
     /// Outcomes of the nominal descent that are limited: name, value in SI.
-    pub nominal: Vec<(&'static str, f64)>,
+    #[serde(deserialize_with = "words::with")]
+    pub nominal: Vec<(Word, f64)>,
     /// Limits that the nominal descent breaches.
     pub nominal_breaches: Vec<String>,
 }

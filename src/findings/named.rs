@@ -3,7 +3,8 @@
 use crate::descent::OutcomeQuantity;
 use crate::sensitivity::pick_freeze::Factor;
 use crate::study::{Limit, Study};
-use serde::{Serialize, Serializer};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 
 /// An output of a study: what a sensitivity is of.
@@ -45,6 +46,21 @@ impl Serialize for Output {
     }
 }
 
+impl<'de> Deserialize<'de> for Output {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        match (text.strip_prefix("breach."), OutcomeQuantity::from_name(&text)) {
+            (Some("any"), _) => Ok(Output::AnyBreach),
+            (Some(limit), _) => Ok(Output::Breach(limit.to_owned())),
+            (None, Some(quantity)) => Ok(Output::Outcome(quantity)),
+            (None, None) => Err(D::Error::custom(format!("{text} is no output"))),
+        }
+    }
+}
+
+/// How the factor of a whole group is written.
+const ALL: &str = " (all)";
+
 /// What a factor is called where the members of its group are factors as well: those of a group are told from it by
 /// what is written.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -66,12 +82,22 @@ impl FactorName {
 
 impl fmt::Display for FactorName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}{}", self.name, if self.all { " (all)" } else { "" })
+        write!(f, "{}{}", self.name, if self.all { ALL } else { "" })
     }
 }
 
 impl Serialize for FactorName {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for FactorName {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        Ok(match text.strip_suffix(ALL) {
+            Some(name) => FactorName { name: name.to_owned(), all: true },
+            None => FactorName { name: text, all: false },
+        })
     }
 }

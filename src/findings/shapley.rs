@@ -10,10 +10,10 @@ use crate::descent::OutcomeQuantity;
 use crate::error::Result;
 use crate::numerics::interval::Estimate;
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The Shapley effects of the limited outcomes and of a breach of any limit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ShapleyFinding {
     /// Why there are none.
     pub none: Option<String>,
@@ -26,7 +26,7 @@ pub struct ShapleyFinding {
 }
 
 /// The Shapley effects of one output.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ShapleyOutput {
     /// The output: an outcome, or any breach.
     pub name: Output,

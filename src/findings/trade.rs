@@ -9,15 +9,16 @@ use crate::campaign::trade::{Curve, HEADLINES, Halved, Parameter, TradeOutcomes}
 use crate::campaign::{Found, in_parallel};
 use crate::error::Result;
 use crate::numerics::interval::{Earned, Estimate};
+use crate::numerics::words::{self, Word};
 use crate::reliability::paired::{PairedCounts, replicated_difference};
 use crate::reliability::probability::Proportion;
 use crate::reliability::replicates::from_replicate_counts;
 use crate::sensitivity::reweighting::{Reweighted, reweighted};
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The trade of tolerances of a study.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TradeFinding {
     /// Why there is none.
     pub none: Option<String>,
@@ -42,7 +43,7 @@ pub struct TradeFinding {
 }
 
 /// One tightening: the spread of a factor halved.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TighteningFinding {
     /// Path of the input, or name of the group.
     pub factor: String,
@@ -61,20 +62,21 @@ pub struct TighteningFinding {
 }
 
 /// P(any breach) against one parameter of one factor.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TradeCurve {
     /// Path of the input, or name of the group.
     pub factor: String,
     /// How many inputs it is.
     pub inputs: usize,
     /// `spread`: a factor of the card's; `mean`: a move of the mean, SI.
-    pub parameter: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub parameter: Word,
     /// The settings in ascending order, the base among them.
     pub points: Vec<TradePoint>,
 }
 
 /// One point of a trade curve.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TradePoint {
     /// Spread factor, or move of the mean, SI.
     pub setting: f64,

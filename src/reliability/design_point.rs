@@ -8,7 +8,7 @@ use super::event::{Evaluator, Event, FaultReading};
 use super::limit_state::LimitState;
 use super::vectors::distance;
 use crate::error::{Error, Result};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// How design points are searched.
@@ -49,7 +49,7 @@ impl SearchOptions {
 }
 
 /// A half space of breaches: direction · u ≥ reliability_index.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HalfSpace {
     /// Unit vector from safe to breach, α.
     pub direction: Vec<f64>,
@@ -58,7 +58,7 @@ pub struct HalfSpace {
 }
 
 /// A converged design point.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DesignPoint {
     /// The limits that are breached there: one, or all members of an intersection.
     pub limits: Vec<usize>,
@@ -75,7 +75,7 @@ pub struct DesignPoint {
 }
 
 /// Why a search gave no design point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Unconverged {
     /// A margin on the way could not be evaluated.
@@ -109,7 +109,7 @@ impl fmt::Display for Unconverged {
 }
 
 /// What the searches of one event found.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DesignPoints {
     /// Distinct converged points, nearest first (by β).
     pub points: Vec<DesignPoint>,

@@ -4,5 +4,6 @@ mod figures;
 mod html;
 mod measures;
 mod numbers;
+mod read_back;
 mod sample;
 mod sweep;

@@ -7,7 +7,7 @@ use crate::findings::drivers::{DriverOutput, DriversFinding};
 use crate::findings::named::Output;
 use crate::sensitivity::pick_freeze::Factor;
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Samples shown: the first of the run.
 const SHOWN: u64 = 2000;
@@ -15,7 +15,7 @@ const SHOWN: u64 = 2000;
 const WANTED: usize = 100;
 
 /// A thinned sample in the plane of two inputs.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Interaction {
     /// The output whose drivers were ranked, in words.
     pub output: String,
@@ -33,7 +33,7 @@ pub struct Interaction {
 }
 
 /// Which samples are shown.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Samples {
     /// All of the first so many that could be computed.
     pub first: usize,
@@ -44,7 +44,7 @@ pub struct Samples {
 }
 
 /// One input of each sample shown.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct InteractionInput {
     /// Path, or name of the statement whose inputs are averaged.
     pub path: String,

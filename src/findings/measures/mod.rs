@@ -16,12 +16,12 @@ use crate::error::Result;
 use crate::study::Study;
 use local::LocalFinding;
 use ranking::RankingFinding;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 pub use index::IndexColumn;
 
 /// The measures of a study.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasuresFinding {
     /// Why there are none.
     pub none: Option<String>,
@@ -38,7 +38,7 @@ pub struct MeasuresFinding {
 }
 
 /// What is measured.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasuredFactor {
     /// Path of the input, or name of the group.
     pub name: FactorName,
@@ -49,7 +49,7 @@ pub struct MeasuredFactor {
 }
 
 /// The measures of one output.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasuredOutput {
     /// The output.
     pub name: Output,

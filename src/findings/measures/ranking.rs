@@ -7,8 +7,9 @@ use crate::findings::drivers::DriversFinding;
 use crate::findings::named::{FactorName, Output};
 use crate::findings::shapley::ShapleyFinding;
 use crate::numerics::interval::Estimate;
+use crate::numerics::words::{self, Word};
 use crate::study::{Limit, Study};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The measures that are compared, beside Sobol' total and Shapley: index, and its name in a table.
 const COMPARED: [(&str, &str); 8] = [
@@ -23,14 +24,15 @@ const COMPARED: [(&str, &str); 8] = [
 ];
 
 /// Ranks of the factors by every measure, of the outcome whose limit is breached most often.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RankingFinding {
     /// The outcome, and in words.
     pub output: Output,
     /// See `output`.
     pub title: String,
     /// The measures.
-    pub measures: Vec<&'static str>,
+    #[serde(deserialize_with = "words::list")]
+    pub measures: Vec<Word>,
     /// One entry a factor: inputs, and groups instead of their members, by their mean rank.
     pub rows: Vec<RankRow>,
     /// Kendall's coefficient of concordance: 1 if all measures rank alike, 0 if at random.
@@ -40,7 +42,7 @@ pub struct RankingFinding {
 }
 
 /// The ranks of one factor.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RankRow {
     /// Path of the input, or name of the group.
     pub factor: String,
