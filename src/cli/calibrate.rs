@@ -1,7 +1,7 @@
 //! `reeldown calibrate`: rig runs in, a posterior card out.
 
 use super::calibrate_arguments::CalibrateArguments;
-use super::command_line::quoted;
+use super::command_line::CommandLine;
 use super::figure_files::write_report_figures;
 use super::output::{say, say_error, say_notes};
 use super::watch::{carry_out, interruptible};
@@ -257,37 +257,23 @@ fn write_cards(
 
 /// The command that gives the same numbers.
 fn command(arguments: &CalibrateArguments) -> String {
-    let mut words = vec!["reeldown".to_owned(), "calibrate".to_owned()];
-    if let Some(study) = &arguments.study.study {
-        words.push(quoted(&study.display().to_string()));
-    }
-    let path = |path: &PathBuf| quoted(&path.display().to_string());
-    words.extend(arguments.data.iter().map(|data| format!("--data {}", path(data))));
-    words.extend(arguments.hold_out.iter().map(|data| format!("--hold-out {}", path(data))));
-    let text = [
-        ("--drive", &arguments.drive),
-        ("--discrepancy", &arguments.discrepancy),
-        ("--seed", &arguments.seed),
-    ];
-    for (option, value) in text {
-        words.extend(value.iter().map(|value| format!("{option} {}", quoted(value))));
-    }
-    let stated = [
-        ("--sensor-sd", &arguments.sensor_sd),
-        ("--gain-sd", &arguments.gain_sd),
-        ("--offset-sd", &arguments.offset_sd),
-    ];
-    for (option, statements) in stated {
-        words.extend(statements.iter().map(|sd| format!("{option} {}", quoted(sd))));
-    }
-    words.extend(arguments.heavy_tails.iter().map(|df| format!("--heavy-tails {df}")));
-    words.extend(arguments.particles.iter().map(|n| format!("--particles {n}")));
-    words.extend(arguments.replicates.iter().map(|n| format!("--replicates {n}")));
-    for (flag, given) in [("--gaps", arguments.gaps), ("--accept", arguments.accept)] {
-        if given {
-            words.push(flag.to_owned());
-        }
-    }
-    words.extend(arguments.study.set.iter().map(|set| format!("--set {}", quoted(set))));
-    words.join(" ")
+    let named = |paths: &[PathBuf]| -> Vec<String> {
+        paths.iter().map(|path| path.display().to_string()).collect()
+    };
+    CommandLine::new("calibrate", &arguments.study)
+        .option("--data", named(&arguments.data))
+        .option("--hold-out", named(&arguments.hold_out))
+        .option("--drive", &arguments.drive)
+        .option("--discrepancy", &arguments.discrepancy)
+        .option("--seed", &arguments.seed)
+        .option("--sensor-sd", &arguments.sensor_sd)
+        .option("--gain-sd", &arguments.gain_sd)
+        .option("--offset-sd", &arguments.offset_sd)
+        .option("--heavy-tails", arguments.heavy_tails)
+        .option("--particles", arguments.particles)
+        .option("--replicates", arguments.replicates)
+        .flag("--gaps", arguments.gaps)
+        .flag("--accept", arguments.accept)
+        .set(&arguments.study)
+        .line()
 }

@@ -1,7 +1,7 @@
 //! `reeldown sweep`: the design space along one or two paths.
 
 use super::arguments::SweepArguments;
-use super::command_line::quoted;
+use super::command_line::CommandLine;
 use super::figure_files::write_report_figures;
 use super::output::{say, say_error, say_notes};
 use super::watch::{carry_out, interruptible};
@@ -140,23 +140,10 @@ fn samples(arguments: &SweepArguments, study: &Study, grid: &Grid) -> Result<Opt
 
 /// The command that gives the same numbers.
 fn command(arguments: &SweepArguments) -> String {
-    let mut words = vec!["reeldown".to_owned(), "sweep".to_owned()];
-    if let Some(study) = &arguments.study.study {
-        words.push(quoted(&study.display().to_string()));
-    }
-    let mut option = |name: &str, values: &[String]| {
-        words.extend(values.iter().map(|value| format!("{name} {}", quoted(value))));
-    };
-    option("--over", &arguments.over);
-    option("--hold", &arguments.hold);
-    option("--centre", &arguments.centre);
-    option("--samples", arguments.samples.as_slice());
-    option("--seed", arguments.seed.as_slice());
-    option("--set", &arguments.study.set);
-    if arguments.nominal {
-        words.push("--nominal".to_owned());
-    }
-    words.join(" ")
+    let SweepArguments { study, over, hold, centre, samples, seed, nominal, .. } = arguments;
+    let command = CommandLine::new("sweep", study).option("--over", over).option("--hold", hold);
+    let command = command.option("--centre", centre).option("--samples", samples);
+    command.option("--seed", seed).set(study).flag("--nominal", *nominal).line()
 }
 
 fn write(

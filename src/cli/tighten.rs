@@ -1,7 +1,7 @@
 //! `reeldown tighten`: which tolerances to buy.
 
 use super::arguments::TightenArguments;
-use super::command_line::quoted;
+use super::command_line::CommandLine;
 use super::output::{say, say_error, say_notes};
 use super::watch::{carry_out, interruptible};
 use super::{Ending, done};
@@ -101,12 +101,7 @@ fn ending(finding: &TightenFinding) -> Ending {
 
 /// The command that gives the same numbers.
 fn command(arguments: &TightenArguments) -> String {
-    let mut words = vec!["reeldown".to_owned(), "tighten".to_owned()];
-    if let Some(study) = &arguments.study.study {
-        words.push(quoted(&study.display().to_string()));
-    }
-    words.extend(arguments.target.iter().map(|target| format!("--target {}", quoted(target))));
-    words.extend(arguments.moves.iter().map(|range| format!("--move {}", quoted(range))));
-    words.extend(arguments.study.set.iter().map(|set| format!("--set {}", quoted(set))));
-    words.join(" ")
+    let TightenArguments { study, target, moves, .. } = arguments;
+    let command = CommandLine::new("tighten", study).option("--target", target);
+    command.option("--move", moves).set(study).line()
 }
