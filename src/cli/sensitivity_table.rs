@@ -14,7 +14,7 @@ const PICK_FREEZE: &str = "pick-freeze design";
 const WALKS: &str = "walks of a design of their own";
 
 /// One row of the table.
-struct Row<'f> {
+struct Row {
     method: &'static str,
     index: &'static str,
     output: String,
@@ -40,14 +40,12 @@ pub(super) fn write_sensitivity(
     rows.extend(shares(findings));
     rows.extend(measured(findings));
     rows.extend(derivatives(findings));
-    let text =
-        |read: &dyn Fn(&Row<'_>) -> Option<String>| Field::Text(rows.iter().map(read).collect());
+    let text = |read: &dyn Fn(&Row) -> Option<String>| Field::Text(rows.iter().map(read).collect());
     let number =
-        |read: &dyn Fn(&Row<'_>) -> Option<f64>| Field::Number(rows.iter().map(read).collect());
-    let count = |read: &dyn Fn(&Row<'_>) -> usize| {
-        Field::Count(rows.iter().map(|r| read(r) as u64).collect())
-    };
-    let why_none = |row: &Row<'_>| {
+        |read: &dyn Fn(&Row) -> Option<f64>| Field::Number(rows.iter().map(read).collect());
+    let count =
+        |read: &dyn Fn(&Row) -> usize| Field::Count(rows.iter().map(|r| read(r) as u64).collect());
+    let why_none = |row: &Row| {
         let why = row.estimate.interval.why_none().map(|why| format!("no interval: {why}"));
         let said = [why, row.note.clone()].into_iter().flatten().collect::<Vec<_>>().join("; ");
         (!said.is_empty()).then_some(said)
@@ -70,7 +68,7 @@ pub(super) fn write_sensitivity(
     write_table(path, columns, parentage.entries())
 }
 
-fn pick_freeze(findings: &Findings) -> Vec<Row<'_>> {
+fn pick_freeze(findings: &Findings) -> Vec<Row> {
     let drivers = &findings.drivers;
     let mut rows = Vec::new();
     for output in &drivers.outputs {
@@ -117,7 +115,7 @@ fn pick_freeze(findings: &Findings) -> Vec<Row<'_>> {
     rows
 }
 
-fn shares(findings: &Findings) -> impl Iterator<Item = Row<'_>> {
+fn shares(findings: &Findings) -> impl Iterator<Item = Row> {
     let shapley = &findings.shapley;
     let inputs = |name: &str| {
         let known = findings.measures.factors.iter().find(|factor| factor.name.name == name);
@@ -139,7 +137,7 @@ fn shares(findings: &Findings) -> impl Iterator<Item = Row<'_>> {
     })
 }
 
-fn measured(findings: &Findings) -> impl Iterator<Item = Row<'_>> {
+fn measured(findings: &Findings) -> impl Iterator<Item = Row> {
     let measures = &findings.measures;
     measures.outputs.iter().flat_map(move |output| {
         output.indices.iter().flat_map(move |column| {
@@ -161,7 +159,7 @@ fn measured(findings: &Findings) -> impl Iterator<Item = Row<'_>> {
     })
 }
 
-fn derivatives(findings: &Findings) -> Vec<Row<'_>> {
+fn derivatives(findings: &Findings) -> Vec<Row> {
     let local = &findings.measures.local;
     let mut rows = Vec::new();
     for outcome in &local.outcomes {

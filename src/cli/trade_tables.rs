@@ -63,7 +63,7 @@ pub(super) fn write_trade(path: &Path, findings: &Findings, parentage: &Parentag
         rows.extend(output.effects.iter().map(|(factor, effect)| Row {
             kind: "shapley",
             name: factor,
-            parameter: output.name.clone(),
+            parameter: output.name.to_string(),
             setting: None,
             value: effect,
             difference: None,

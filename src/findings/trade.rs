@@ -191,7 +191,7 @@ impl Paired {
 }
 
 /// A proportion with its exact interval.
-pub(super) fn proportion(counts: &Proportion) -> Result<Estimate> {
+pub(crate) fn proportion(counts: &Proportion) -> Result<Estimate> {
     let value = counts.estimate();
     let computed = (counts.samples - counts.faults) as f64;
     let standard_error = value.map(|p| (p * (1.0 - p) / computed).sqrt());
