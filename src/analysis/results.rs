@@ -11,12 +11,12 @@ use crate::descent::OutcomeQuantity;
 use crate::error::Result;
 use crate::findings::{
     self, CalibratedFinding, CorrelationFinding, DriversFinding, EpistemicFinding, ExactFinding,
-    ExceptionFinding, FigureData, InputFinding, KnownFinding, MarginFinding, MeasuresFinding,
-    MethodFinding, ModelFormFinding, NominalFinding, NumericalFinding, OutcomeFinding,
-    ProbabilityFinding, RareFinding, ReproductionFinding, ShapleyFinding, StoppingFinding,
-    TradeFinding, VerdictFinding, calibrated, demonstration, drivers, epistemic, exact, figures,
-    inputs, known, margins, measures, model_form, numerical, probabilities, rare_findings,
-    sequence, shapley, this_brake, trade,
+    ExceptionFinding, FigureData, InputFinding, KnownFinding, LimitFinding, MarginFinding,
+    MeasuresFinding, MethodFinding, ModelFormFinding, NominalFinding, NumericalFinding,
+    OutcomeFinding, ProbabilityFinding, RareFinding, ReproductionFinding, ShapleyFinding,
+    StoppingFinding, TradeFinding, VerdictFinding, calibrated, demonstration, drivers, epistemic,
+    exact, figures, inputs, known, limits, margins, measures, model_form, numerical, probabilities,
+    rare_findings, sequence, shapley, this_brake, trade,
 };
 use crate::study::{RequirementOf, Study};
 use serde::{Deserialize, Serialize};
@@ -36,6 +36,8 @@ pub struct Findings {
     pub verdict: VerdictFinding,
     /// Why the sampling ended where it did, if that was decided while sampling.
     pub stopping: Option<StoppingFinding>,
+    /// The limits, and where each comes from.
+    pub limits: Vec<LimitFinding>,
     /// Each limit, any limit, each pair.
     pub probabilities: Vec<ProbabilityFinding>,
     /// Events too rare for the samples, by several methods.
@@ -144,6 +146,7 @@ pub fn gather(
         title: study.title.clone(),
         verdict,
         stopping: sequence::stopping(study, record.counts().samples(), sampling.stop),
+        limits: limits::limits(study),
         probabilities,
         rare: rare_findings(study, rare, nominal.as_ref().ok()),
         model_form: model_form::model_form(study, &analyses.model_form)?,

@@ -31,32 +31,34 @@ pub(super) struct Arguments {
 pub(super) enum Command {
     /// Run a study: probabilities of breach, verdict, margins, drivers; write report and tables
     Run(RunArguments),
-    /// Cut a run into shards, for a cluster or a queue: one file that every machine takes its part from
+    /// Divide a run into shards for a cluster or a queue: writes the plan file that every machine reads
     Plan(PlanArguments),
-    /// Compute one shard of a plan; one that is there already is left as it is
+    /// Compute one shard of a plan; a shard that is complete already is kept
     Shard(ShardArguments),
-    /// Print the numbers of the shards that are not there, as an array job takes them (3,7-9)
+    /// Print the numbers of the missing shards, in the syntax of array jobs (3,7-9)
     Missing(MissingArguments),
-    /// Join the shards of a plan and report on them, byte for byte as one machine would
+    /// Merge the shards of a plan and report on them, byte for byte as one machine would
     Merge(MergeArguments),
     /// Compute one nominal descent and show its outcomes
     Descend(DescendArguments),
-    /// Say what changed between two finished runs: inputs, probabilities, margins, drivers
+    /// Compare two finished runs: inputs, probabilities, margins, drivers
     Compare(CompareArguments),
     /// Map the design space along one or two paths: outcomes, margins, probabilities, best values
     Sweep(SweepArguments),
     /// Find the cheapest tightenings and design change that meet a target, and confirm them
     Tighten(TightenArguments),
-    /// Learn the brake from measured rig runs: a posterior, its checks, and a calibrated card
+    /// Calibrate the model to rig test data: a posterior, its checks, and a calibrated card
     Calibrate(Box<CalibrateArguments>),
     /// The horizontal rig: one run, its modes compared as test options, or the best tests planned
     Rig(Box<RigArguments>),
-    /// Draw the paper's figures again and hold them against what the paper says of them
+    /// Reproduce the paper's figures and check its claims
     Paper(PaperArguments),
-    /// Compute one sample of a run again, and compare it bit for bit
+    /// Recompute one sample of a run and compare it bit for bit
     Replay(ReplayArguments),
     /// Validate a study and show every resolved input with its unit and source
     Check(CheckArguments),
+    /// Explain an input or an outcome: what it is, unit, range, value, law and sources; without a name, list them
+    Explain(ExplainArguments),
     /// Print the JSON Schema of study files or of cards
     Schema {
         /// Which schema
@@ -112,7 +114,7 @@ pub(super) struct StudyArguments {
 pub(super) struct SampledStudy {
     #[command(flatten)]
     pub study: StudyArguments,
-    /// Number of samples, in place of the study's; the budget of a study that samples until something
+    /// Number of samples, in place of the study's; or the sampling budget if the study has a stopping rule
     #[arg(long, value_name = "N")]
     pub samples: Option<String>,
     /// Seed of every random stream, in place of the study's
@@ -232,6 +234,9 @@ pub(super) struct CompareArguments {
     /// Write the comparison as Markdown too
     #[arg(long, value_name = "FILE")]
     pub markdown: Option<PathBuf>,
+    /// Write the comparison as an HTML page too
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
     /// Print the comparison as one JSON object in SI, and nothing else, on standard output
     #[arg(long)]
     pub json: bool,
@@ -336,6 +341,22 @@ pub(super) struct CheckArguments {
     /// Print the resolved study as one JSON object in SI, and nothing else, on standard output
     #[arg(long)]
     pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ExplainArguments {
+    /// A dotted path such as brake.gap, or an outcome such as peak_tension
+    pub name: Option<String>,
+    /// Study whose values are shown [default: the embedded study of the HABE brake]
+    #[arg(long, value_name = "FILE")]
+    study: Option<PathBuf>,
+}
+
+impl ExplainArguments {
+    /// The study whose values are shown.
+    pub fn study(&self) -> Result<Study> {
+        StudyArguments { study: self.study.clone(), set: Vec::new() }.load(&[])
+    }
 }
 
 impl SampledStudy {

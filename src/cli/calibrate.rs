@@ -11,7 +11,7 @@ use crate::campaign::calibration::{self, Calibration, Channel, Options, is_hardw
 use crate::descent::driven::Drive;
 use crate::error::{Error, Result};
 use crate::findings::calibration::{self as findings, CalibrationFinding};
-use crate::render;
+use crate::render::{self, Mark};
 use crate::store::{Contents, Field, PARQUET, ResultDirectory, write_table};
 use crate::study::measured_run::Acceptance;
 use crate::study::{MeasuredRun, Study, sha256};
@@ -22,6 +22,8 @@ use std::path::PathBuf;
 const FINDINGS: &str = "findings.json";
 /// The report.
 const REPORT: &str = "report.md";
+/// The report as a page.
+const PAGE: &str = "report.html";
 /// The joint sample.
 const POSTERIOR: &str = "posterior.parquet";
 /// The card that draws from it.
@@ -41,7 +43,7 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
     let contents = Contents {
         kind: "calibrate",
         study: &study.title,
-        files: &[FINDINGS, REPORT, POSTERIOR, CARD, LAWS],
+        files: &[FINDINGS, REPORT, PAGE, POSTERIOR, CARD, LAWS],
         force: arguments.force,
     };
     let directory = ResultDirectory::open(&directory, contents)?;
@@ -61,7 +63,7 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
         let screened = calibration::screen(&study, &all, &options)?;
         if let Some(why) = findings::refusal(&findings::suspicions(&screened)) {
             return Err(Error::argument(format!(
-                "{why}. Correct the run, or say --accept to calibrate with it as it is"
+                "{why}. correct the run, or use --accept to calibrate with it unchanged"
             )));
         }
     }
@@ -82,7 +84,11 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
     let figures = render::calibration_figures(&finding);
     directory.write_text(FINDINGS, &format!("{json}\n"))?;
     write_report_figures(&directory, &figures)?;
-    directory.write_text(REPORT, &render::calibration_markdown(&finding, &figures))?;
+    let report = render::calibration_markdown(&finding, &figures);
+    let mark = if finding.accepted { Mark::Met } else { Mark::Undecided };
+    directory
+        .write_text(PAGE, &render::page("Calibration to rig runs", mark, &report, &figures)?)?;
+    directory.write_text(REPORT, &report)?;
     let written = finding.accepted || finding.converged && arguments.accept;
     if written {
         write_cards(&directory, &study, &found, &finding)?;

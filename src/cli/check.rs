@@ -40,7 +40,13 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<Ending> {
         );
     }
     for limit in &study.limits {
-        text += &format!("limit: {} {} {}\n", limit.outcome.name(), limit.kind.name(), limit.text);
+        text += &format!(
+            "limit: {} {} {}; {}\n",
+            limit.outcome.name(),
+            limit.kind.name(),
+            limit.text,
+            limit.source_text()
+        );
     }
     if let Some(requirement) = study.requirement {
         text += &format!(
@@ -122,6 +128,7 @@ fn json(study: &Study) -> serde_json::Value {
                 "side": limit.kind.name(),
                 "value": limit.value,
                 "unit": limit.outcome.quantity().si_unit(),
+                "source": limit.source,
             })
         })
         .collect();

@@ -7,7 +7,7 @@ use crate::analysis::compare::{FinishedRun, compare as findings};
 use crate::analysis::{Findings, Unreadable};
 use crate::campaign::ROW_GROUP;
 use crate::error::{Error, Result};
-use crate::render;
+use crate::render::{self, Mark};
 use crate::store::{OutcomesReader, refuse_unfinished, verify_listed, write_text};
 use std::path::Path;
 
@@ -19,6 +19,10 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<Ending> {
     let finding = findings(&before?, &after?)?;
     if let Some(path) = &arguments.markdown {
         write_text(path, &render::compare_markdown(&finding))?;
+    }
+    if let Some(path) = &arguments.html {
+        let report = render::compare_markdown(&finding);
+        write_text(path, &render::page("Two runs compared", Mark::None, &report, &[])?)?;
     }
     if arguments.json {
         let json = serde_json::to_string_pretty(&finding)

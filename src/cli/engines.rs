@@ -120,7 +120,7 @@ impl Script<'_> {
              #SBATCH --array=0-{last}\n\
              #SBATCH --requeue\n\
              #SBATCH --signal=B:TERM@{WARNING_S}\n\
-             # One shard a task; one that is there already is left as it is. Add what this cluster wants: partition,\n\
+             # One shard a task; a complete shard is kept. Add what this cluster wants: partition,\n\
              # account, --time, --mem; more cores a task with --cpus-per-task.\n\
              cd {here} || exit\n\
              # In the shell's place, so that a request to end reaches it.\n\
@@ -159,7 +159,7 @@ fn label(name: &str) -> String {
 
 fn manifest(plan: &Plan, image: &str) -> String {
     format!(
-        "# {shards} shards of a plan that lies in the volume as plan.json. One that is there already is left as it is:\n\
+        "# {shards} shards of a plan that lies in the volume as plan.json. A complete shard is kept:\n\
          # to repair, delete the job and apply this again. Exit code 2 is for what no second attempt would mend.\n\
          apiVersion: batch/v1\n\
          kind: Job\n\

@@ -10,6 +10,7 @@ mod descend;
 mod describe;
 mod diagnostics;
 mod engines;
+mod explain;
 mod figure_files;
 mod output;
 mod paper;
@@ -107,6 +108,7 @@ fn carry_out(arguments: Arguments) -> Result<Ending> {
         Some(Command::Rig(rig)) => rig::rig(&rig),
         Some(Command::Replay(replay)) => replay::replay(&replay),
         Some(Command::Check(check)) => check::check(&check),
+        Some(Command::Explain(explain)) => explain::explain(&explain),
         Some(Command::Schema { kind }) => describe::schema(kind),
         Some(Command::Completions { shell }) => describe::completions(shell),
         Some(Command::Man) => describe::man(),

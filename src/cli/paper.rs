@@ -7,7 +7,7 @@ use super::{Ending, done};
 use crate::error::{Error, Result};
 use crate::findings::paper::{PaperFinding, Verdict, paper as findings};
 use crate::physics::Parameter;
-use crate::render::{paper_count, paper_page, table};
+use crate::render::{Mark, page as render_page, paper_count, paper_page, table};
 use crate::store::{Contents, ResultDirectory};
 use crate::study::Study;
 use crate::units::engineering;
@@ -19,7 +19,7 @@ pub(super) fn paper(arguments: &PaperArguments) -> Result<Ending> {
     let contents = Contents {
         kind: "paper",
         study: &study.title,
-        files: &["report.md", "paper.json"],
+        files: &["report.md", "report.html", "paper.json"],
         force: arguments.force,
     };
     let directory = arguments.out.as_ref().map(|path| ResultDirectory::open(path, contents));
@@ -28,6 +28,9 @@ pub(super) fn paper(arguments: &PaperArguments) -> Result<Ending> {
     if let Some(directory) = directory {
         let page = paper_page(&finding, &design(&study), &command(arguments));
         write_report_figures(&directory, &page.figures)?;
+        let html =
+            render_page("The paper and the program", Mark::None, &page.markdown, &page.figures)?;
+        directory.write_text("report.html", &html)?;
         directory.write_text("report.md", &page.markdown)?;
         directory.write_text("paper.json", &format!("{}\n", json(&finding)?))?;
         directory.finish()?;
@@ -62,7 +65,7 @@ pub(super) fn paper(arguments: &PaperArguments) -> Result<Ending> {
         }
     }
     if let Some(directory) = &arguments.out {
-        text += &format!("\nreport: {}\n", directory.join("report.md").display());
+        text += &format!("\nreport: {}\n", directory.join("report.html").display());
     }
     done(&text)
 }

@@ -83,7 +83,7 @@ pub(super) fn study(path: &Path, parentage: &Parentage) -> Result<Study> {
     let fail = |reason: String| {
         Error::file(
             path,
-            "make the study of",
+            "reconstruct the study of",
             reason,
             "use the version of reeldown and the data files that made it",
         )

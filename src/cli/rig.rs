@@ -1,7 +1,7 @@
 //! `reeldown rig`: the horizontal rig, its modes compared, and tests planned on it.
 
 use super::descend::{outcome_json, outcome_table, write_trace};
-use super::figure_files::write_figures;
+use super::figure_files::{write_figures, write_report_figures};
 use super::output::{say_error, say_notes};
 use super::rig_arguments::{RigArguments, option};
 use super::{Ending, done};
@@ -11,9 +11,10 @@ use crate::error::{Error, Result};
 use crate::findings::rig::{self, Equipment, PlanOptions, RigRun};
 use crate::physics::Parameter;
 use crate::render::{
-    rig_comparison_terminal, rig_figures, rig_mode_figures, rig_plan_terminal, table,
+    Figure, Mark, page, rig_comparison_markdown, rig_comparison_terminal, rig_figures,
+    rig_mode_figures, rig_plan_markdown, rig_plan_terminal, table,
 };
-use crate::store::PARQUET;
+use crate::store::{Contents, PARQUET, ResultDirectory};
 use crate::study::measured_run::Acceptance;
 use crate::study::{Limit, MeasuredRun, Study};
 use crate::units::{Quantity, System, engineering, format_engineering};
@@ -86,7 +87,7 @@ fn single(
                 let run = rig::held(&study.design, *drive, *level)?;
                 (format!("constant {} of {held}", drive.name()), run)
             }
-            [] => return Err(Error::argument("nothing pulls")),
+            [] => return Err(Error::argument("no load given")),
         },
     };
     if let Some(path) = &arguments.trace {
@@ -182,6 +183,9 @@ fn compare(
     if let Some(directory) = &arguments.figures {
         write_figures(directory, &rig_mode_figures(&found))?;
     }
+    let figures = rig_mode_figures(&found);
+    let report = || rig_comparison_markdown(&found, &figures);
+    write_report(arguments, study, &as_json(&found)?, report, &figures)?;
     if arguments.json {
         return done(&as_json(&found)?);
     }
@@ -189,7 +193,7 @@ fn compare(
     if let Some(directory) = &arguments.figures {
         text += &format!("\nfigures: {}\n", directory.display());
     }
-    done(&text)
+    done(&(text + &where_report_is(arguments)))
 }
 
 fn plan(
@@ -210,10 +214,40 @@ fn plan(
     }
     let options = PlanOptions { runs, starts_k, equipment };
     let found = rig::plan(study, &options)?;
+    write_report(arguments, study, &as_json(&found)?, || rig_plan_markdown(&found), &[])?;
     if arguments.json {
         return done(&as_json(&found)?);
     }
-    done(&rig_plan_terminal(&found))
+    done(&(rig_plan_terminal(&found) + &where_report_is(arguments)))
+}
+
+/// The report's files, in the directory that was named.
+const FILES: [&str; 3] = ["report.html", "report.md", "rig.json"];
+
+/// Writes the report of a comparison or a plan, if a directory was named for it.
+fn write_report(
+    arguments: &RigArguments,
+    study: &Study,
+    json: &str,
+    report: impl Fn() -> String,
+    figures: &[Figure],
+) -> Result<()> {
+    let Some(path) = &arguments.out else { return Ok(()) };
+    let contents =
+        Contents { kind: "rig", study: &study.title, files: &FILES, force: arguments.overwrite };
+    let directory = ResultDirectory::open(path, contents)?;
+    let report = report();
+    write_report_figures(&directory, figures)?;
+    directory.write_text(FILES[0], &page("Horizontal rig", Mark::None, &report, figures)?)?;
+    directory.write_text(FILES[1], &report)?;
+    directory.write_text(FILES[2], &format!("{json}\n"))?;
+    directory.finish()
+}
+
+fn where_report_is(arguments: &RigArguments) -> String {
+    arguments.out.as_ref().map_or(String::new(), |directory| {
+        format!("\nreport: {}\n", directory.join(FILES[0]).display())
+    })
 }
 
 fn as_json(finding: &impl Serialize) -> Result<String> {

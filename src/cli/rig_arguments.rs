@@ -86,6 +86,12 @@ pub(super) struct RigArguments {
     /// Draw figures into a directory, as SVG
     #[arg(long, value_name = "DIR", conflicts_with = "plan")]
     pub figures: Option<PathBuf>,
+    /// Directory for report.html, report.md, rig.json and the figures of --compare or --plan
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Write into the directory even if it holds something else than earlier results of this study
+    #[arg(long, requires = "out")]
+    pub overwrite: bool,
     /// Print the result as one JSON object in SI, and nothing else, on standard output
     #[arg(long)]
     pub json: bool,
@@ -108,6 +114,11 @@ impl RigArguments {
             let text = "what pulls? give one of --force \"6000 lbf\", --speed \"2.5 ft/s\", --power \"20 kW\", \
                         --recorded FILE.csv, or --compare, or --plan";
             return usage(ErrorKind::MissingRequiredArgument, text);
+        }
+        if self.out.is_some() && !self.compare && self.plan.is_none() {
+            let text =
+                "--out writes the report of --compare or --plan; one run has --figures and --trace";
+            return usage(ErrorKind::ArgumentConflict, text);
         }
         let thermometers = &self.instruments.thermometers;
         if thermometers.contains(&Thermometer::None) && thermometers.len() > 1 {

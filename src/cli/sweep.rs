@@ -9,7 +9,7 @@ use super::{Ending, done, parentage};
 use crate::campaign::sweep::{Grid, Meaning, SweptPath, check, run_sweep, usual_samples};
 use crate::error::{Error, Result};
 use crate::findings::sweep::{SweepFinding, sweep as findings};
-use crate::render;
+use crate::render::{self, Mark};
 use crate::store::{Contents, Field, ResultDirectory, write_table};
 use crate::study::{Over, Study, design_path, option_error};
 use std::path::{Path, PathBuf};
@@ -20,6 +20,8 @@ const TABLE: &str = "sweep.parquet";
 const FINDINGS: &str = "sweep.json";
 /// The report.
 const REPORT: &str = "report.md";
+/// The report as a page.
+const PAGE: &str = "report.html";
 /// Samples that a cell may have.
 const SAMPLES: std::ops::RangeInclusive<u64> = 20..=200_000;
 
@@ -38,7 +40,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Ending> {
     let contents = Contents {
         kind: "sweep",
         study: &study.title,
-        files: &[TABLE, FINDINGS, REPORT],
+        files: &[TABLE, FINDINGS, REPORT, PAGE],
         force: arguments.force,
     };
     let directory = ResultDirectory::open(&directory, contents)?;
@@ -57,7 +59,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Ending> {
     };
     let json = serde_json::to_string_pretty(&finding)
         .map_err(|reason| Error::argument(format!("the sweep cannot be written: {reason}")))?;
-    let report = directory.path().join(REPORT);
+    let report = directory.path().join(PAGE);
     write(directory, &study, &finding, &json)?;
     if arguments.json {
         return done(&json);
@@ -155,7 +157,9 @@ fn write(
     directory.write_text(FINDINGS, &format!("{json}\n"))?;
     let figures = render::sweep_figures(finding);
     write_report_figures(&directory, &figures)?;
-    directory.write_text(REPORT, &render::sweep_markdown(finding, &figures))?;
+    let report = render::sweep_markdown(finding, &figures);
+    directory.write_text(PAGE, &render::page("Design space", Mark::None, &report, &figures)?)?;
+    directory.write_text(REPORT, &report)?;
     write_long_table(&directory.table(TABLE)?, study, finding)?;
     directory.finish()
 }

@@ -9,13 +9,15 @@ use crate::campaign;
 use crate::error::{Error, Result};
 use crate::findings::known::GoAnswer;
 use crate::findings::tighten::{TightenFinding, tighten as findings};
-use crate::render;
+use crate::render::{self, Mark};
 use crate::store::{Contents, ResultDirectory};
 
 /// The findings as one tree.
 const FINDINGS: &str = "tighten.json";
 /// The report.
 const REPORT: &str = "tighten.md";
+/// The report as a page.
+const PAGE: &str = "tighten.html";
 /// Descents that a search takes, about: what the progress bar goes by.
 const EVALUATIONS: u64 = 250;
 
@@ -28,7 +30,7 @@ pub(super) fn tighten(arguments: &TightenArguments) -> Result<Ending> {
     let contents = Contents {
         kind: "tighten",
         study: &study.title,
-        files: &[FINDINGS, REPORT],
+        files: &[FINDINGS, REPORT, PAGE],
         force: arguments.force,
     };
     let directory = arguments.out.as_ref().map(|path| ResultDirectory::open(path, contents));
@@ -47,7 +49,14 @@ pub(super) fn tighten(arguments: &TightenArguments) -> Result<Ending> {
     let json = render::json(&finding)?;
     if let Some(directory) = directory {
         directory.write_text(FINDINGS, &json)?;
-        directory.write_text(REPORT, &render::tighten_markdown(&finding))?;
+        let report = render::tighten_markdown(&finding);
+        let mark = match finding.answer {
+            GoAnswer::Go => Mark::Met,
+            GoAnswer::NoGo => Mark::NotMet,
+            GoAnswer::Undecided | GoAnswer::NoRequirement => Mark::Undecided,
+        };
+        directory.write_text(PAGE, &render::page("Plan of tolerances", mark, &report, &[])?)?;
+        directory.write_text(REPORT, &report)?;
         directory.finish()?;
     }
     if arguments.json {

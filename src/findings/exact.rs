@@ -123,8 +123,8 @@ fn alert(values: &[ExactValue], strongest: Option<&(String, Estimate)>) -> Optio
     (!named.is_empty()).then(|| {
         format!(
             "ALERT: taken as exact, without a stated accuracy, and of more weight than any input of the card: {}. \
-             In brackets: percentage points of P(any breach) for 1 % (a temperature: 1 K); the card's strongest, \
-             `{name}`, does {}. What is not known of these values is in no number of this report: give them laws.",
+             In parentheses: change of P(any breach) in percentage points for 1 % (a temperature: 1 K); the card's strongest \
+             input, `{name}`, makes {}. The uncertainty of these values is in no number of this report: give them laws.",
             named.join(", "),
             points(most)
         )

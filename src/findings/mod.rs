@@ -12,6 +12,7 @@ pub(crate) mod exact;
 pub(crate) mod figures;
 pub(crate) mod inputs;
 pub mod known;
+pub(crate) mod limits;
 pub(crate) mod margins;
 pub mod measures;
 pub(crate) mod model_form;
@@ -49,6 +50,7 @@ pub use figures::{
 };
 pub use inputs::{CorrelationFinding, InputFinding};
 pub use known::KnownFinding;
+pub use limits::LimitFinding;
 pub use margins::{MarginFinding, MarginQuantile};
 pub use measures::MeasuresFinding;
 pub use model_form::{FormFinding, ModelFormFinding};

@@ -112,7 +112,7 @@ pub struct CellFinding {
     pub limiting: Option<usize>,
     /// P(any breach); `None` without samples.
     pub any: Option<Estimate>,
-    /// P(any breach) at points that the search has not seen: of the best cell of each line, the one with the smallest P
+    /// P(any breach) at points independent of the search: of the best cell of each line, the one with the smallest P
     /// and those that seemed to meet the requirement.
     pub confirmed: Option<Estimate>,
     /// Breaches, faults and samples behind it.
@@ -123,7 +123,7 @@ pub struct CellFinding {
     pub counts: Vec<Proportion>,
     /// Quantiles of each limit's outcome: 5 %, 50 %, 95 %.
     pub quantiles: Vec<Option<[f64; 3]>>,
-    /// Whether the requirement is demonstrated here; where it seemed to be, by the points that the search has not seen.
+    /// Whether the requirement is demonstrated here; where it seemed to be, by the points independent of the search.
     pub answer: GoAnswer,
 }
 
@@ -318,13 +318,13 @@ fn method(
         lines.push(format!(
             "What was found by looking over the cells has the luck of their points on its side: the best cell of each \
              line, the cell with the smallest P and every cell that seems to meet the requirement are estimated anew \
-             with {rows} plain Monte Carlo samples that the search has not seen. P at a best value is that estimate. \
+             with {rows} plain Monte Carlo samples independent of the search. P at a best value is that estimate. \
              Cells of one line share these points and err together; lines are independent of each other."
         ));
     }
     if let (Some(required), Some(_)) = (required, samples) {
         lines.push(format!(
-            "A cell meets the requirement if the samples that the search has not seen demonstrate P(any breach) ≤ {} \
+            "A cell meets the requirement if the samples independent of the search demonstrate P(any breach) ≤ {} \
              there at {} confidence. This holds for each cell by itself and not for all at once: of many cells that \
              just miss the requirement, up to {} will be said to meet it.",
             percent(required.failure_limit()),

@@ -204,7 +204,7 @@ fn proof_of(found: &Tightening, proof: &Proof) -> ProofFinding {
     let cost = found.confirmation.plan.cost;
     let percent = super::percent::percent;
     let refuted = match (proof.refuted, found.settings) {
-        (0, _) => "There is none that costs less".to_owned(),
+        (0, _) => "No plan costs less".to_owned(),
         (plans, 1) => format!("{plans} plans that cost less were refuted one by one"),
         (plans, settings) => format!(
             "{plans} plans that cost less were refuted one by one, each at {settings} settings of the design values"
@@ -218,17 +218,17 @@ fn proof_of(found: &Tightening, proof: &Proof) -> ProofFinding {
     );
     let statement = match proof.complete {
         true if proof.none_below >= cost - 1e-9 => format!(
-            "Exhaustive search: no plan of half halvings and purchasable grades costs less than {cost:.2} and reaches the \
-             aim; spreads between half halvings were trimmed, not searched. {on}."
+            "Exhaustive search: no plan on the search grid (spread × 2^(−k/2), listed grades) that costs less than {cost:.2} \
+             meets the target; spreads between grid points were refined, not searched. {on}."
         ),
         true => format!(
-            "Exhaustive search: no plan of half halvings and purchasable grades costs less than {:.2} and reaches the \
-             aim; spreads between half halvings were trimmed, not searched. {on}.",
+            "Exhaustive search: no plan on the search grid (spread × 2^(−k/2), listed grades) that costs less than {:.2} \
+             meets the target; spreads between grid points were refined, not searched. {on}.",
             proof.none_below
         ),
         false => format!(
-            "The cheaper plans are too many to refute all: none that costs less than {:.2} does, and between that and \
-             {cost:.2} the plan is good, not proven cheapest (greedy with exchanges). {on}.",
+            "There are too many cheaper plans to refute them all: none that costs less than {:.2} meets the target; between that \
+             and {cost:.2} the plan is not proven cheapest (greedy search with exchanges). {on}.",
             proof.none_below
         ),
     };

@@ -44,7 +44,9 @@ pub(super) fn calibrated(finding: &CalibratedFinding) -> Calibrated {
     let mut headlines = Vec::new();
     if let Some(any) = finding.events.last() {
         let band = |band: Option<(f64, f64)>| {
-            band.map_or(String::new(), |ends| format!(" (90 % of belief: {})", band_text(ends)))
+            band.map_or(String::new(), |ends| {
+                format!(" (90 % credible interval {})", band_text(ends))
+            })
         };
         headlines.push(format!(
             "P(any breach) was {}{} before the calibration and is {}{} with it.",
@@ -64,7 +66,7 @@ pub(super) fn calibrated(finding: &CalibratedFinding) -> Calibrated {
         .take(NAMED)
         .map(|input| {
             format!(
-                "`{}` {} percentage points (mean moved by {} prior standard deviations, spread {} of what it was)",
+                "`{}` {} percentage points (mean moved by {} prior standard deviations, spread × {})",
                 input.path,
                 points(&input.effect),
                 number(input.shift, 2),
@@ -80,9 +82,9 @@ pub(super) fn calibrated(finding: &CalibratedFinding) -> Calibrated {
         events: finding.events.iter().map(event).collect(),
         moved: finding.moved.iter().map(moved).collect(),
         about: format!(
-            "Calibrated from {}. Before: the cards {} alone, the same seed and {} samples of either. What an \
-             input did is P(any breach) as it is less that with the input's prior law in place of its posterior \
-             one, everything else as it is, on the same random numbers; an input that is drawn together with \
+            "Calibrated from {}. Before: the cards {} alone, the same seed and {} samples of either. The \
+             effect of an input is P(any breach) minus its value with the input's prior law in place of its posterior \
+             one, all else equal, on the same random numbers; an input that is drawn together with \
              others keeps its rank among the rows.",
             finding.calibrated_from,
             finding.prior_cards.join(", "),

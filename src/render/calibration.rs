@@ -37,7 +37,8 @@ pub fn calibration_terminal(finding: &CalibrationFinding) -> String {
     text
 }
 
-const PARAMETER_HEADER: [&str; 4] = ["parameter (SI)", "prior", "posterior", "learned"];
+const PARAMETER_HEADER: [&str; 4] =
+    ["parameter (SI)", "prior", "posterior", "prior variance reduced by"];
 const CHECK_HEADER: [&str; 6] =
     ["run", "channel", "in the 90 % band", "independent", "residual rms", "band ±"];
 const RISK_HEADER: [&str; 4] = ["P(breach)", "5 % of brakes below", "all", "95 % of brakes below"];
@@ -54,7 +55,7 @@ fn spread((mean, sd): (f64, f64), unit: &str) -> String {
 
 fn parameter_row(parameter: &ParameterFinding) -> [String; 4] {
     let learned = match parameter.prior_dominated {
-        true => "prior".to_owned(),
+        true => "not identified".to_owned(),
         false => format!("{:.0} %", 100.0 * parameter.learned),
     };
     [
@@ -142,7 +143,7 @@ pub fn calibration_markdown(finding: &CalibrationFinding, figures: &[Figure]) ->
     for line in &finding.statements {
         text += &format!("- {line}\n");
     }
-    text += "\n## The runs\n\n";
+    text += "\n## Rig runs\n\n";
     let runs = finding.runs.iter().map(|run| {
         [
             short(&run.name).to_owned(),
@@ -165,18 +166,18 @@ pub fn calibration_markdown(finding: &CalibrationFinding, figures: &[Figure]) ->
     for suspicion in &finding.suspicions {
         text += &format!("\n- Look at {}.\n", about_one(suspicion));
     }
-    text += "\n## What the runs taught\n\nMean ± standard deviation, SI. Learned: the share of the prior's variance that is gone. \
+    text += "\n## What the data identify\n\nMean ± standard deviation, SI. \
              The gaps act on the rig only through the sum of their reciprocals, and through it only together with the \
              viscosity: the brake's strength is what a run measures, and each gap stays near its prior.\n\n";
     text += &markdown_table(PARAMETER_HEADER, finding.parameters.iter().map(parameter_row));
     text += &figures_named(figures, |name| name == "shrinkage");
-    text += "\nSampled with the rest: starts, sensor errors, and the model's discrepancy, an Ornstein–Uhlenbeck process of each \
+    text += "\nNuisance parameters: initial states, sensor errors, and the model discrepancy, an Ornstein–Uhlenbeck process of each \
              channel.\n\n";
     text += &markdown_table(
-        ["", "prior", "posterior", "learned"],
+        ["", "prior", "posterior", "prior variance reduced by"],
         finding.nuisances.iter().map(parameter_row),
     );
-    text += "\n## Do the runs look as they should?\n\nThe share of the readings inside the 90 % band of what the posterior \
+    text += "\n## Posterior predictive checks\n\nThe share of the readings inside the 90 % band of what the posterior \
              predicts of them; neighbours within the discrepancy's correlation time count as one.\n\n";
     text += &markdown_table(CHECK_HEADER, check_rows(finding));
     text += &figures_named(figures, |name| name.starts_with("residuals"));
@@ -188,16 +189,16 @@ pub fn calibration_markdown(finding: &CalibrationFinding, figures: &[Figure]) ->
     }
     if let Some(next) = &finding.next {
         text += &format!(
-            "\n## What to measure next\n\nExpected band on P(any breach) after each measurement, reckoned linearly about the \
-             posterior's mean (probit of P linear in the inputs, {} of its variance is; errors as found in the runs). What \
-             will be read does not matter to a linear reckoning; how much narrower the band gets does.\n\n",
+            "\n## What to measure next\n\nExpected band on P(any breach) after each measurement, linearised at the \
+             posterior mean (probit of P linear in the inputs, which explains {} of its variance; errors as found in the runs). \
+             In a linear model the width after a measurement does not depend on its reading.\n\n",
             probability(next.linear)
         );
         text += &markdown_table(NEXT_HEADER, next_rows(finding));
     }
     text += "\n## Do the data agree?\n\nEach run against what the others expect of it (leave one out), the posterior against the \
-             card, and each channel's errors against independence (Ljung and Box). Of calibrations in which all is as it is \
-             said to be about one in ten is doubted.\n\n";
+             card, and each channel's errors against independence (Ljung and Box). Of calibrations whose every \
+             assumption holds about one in ten is doubted.\n\n";
     let tests = finding.consistency.iter().map(|test| {
         [
             test.channel.map_or(short(&test.of).to_owned(), |channel| {
@@ -209,7 +210,7 @@ pub fn calibration_markdown(finding: &CalibrationFinding, figures: &[Figure]) ->
             number(test.least, 2),
         ]
     });
-    let header = ["", "against", "chi-squared (degrees of freedom)", "p", "doubted below"];
+    let header = ["", "against", "chi-squared (degrees of freedom)", "p", "in doubt below"];
     text += &markdown_table(header, tests);
     text += &format!("\n## Sampling\n\n{}", sampling(finding));
     let reproduction = &finding.reproduction;
@@ -249,12 +250,8 @@ fn sampling(finding: &CalibrationFinding) -> String {
 fn figures_named(figures: &[Figure], wanted: impl Fn(&str) -> bool) -> String {
     let mut text = String::new();
     for figure in figures.iter().filter(|figure| wanted(&figure.name)) {
-        text += &format!(
-            "\n![{}](figures/{})\n\n{}\n",
-            figure.alternative,
-            figure.file_name(),
-            figure.caption
-        );
+        text += &format!("\n{}", figure.markdown().trim_end());
+        text.push('\n');
     }
     text
 }

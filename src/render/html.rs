@@ -10,8 +10,8 @@ use minijinja::{Environment, Value};
 use serde::Serialize;
 
 const TEMPLATE: &str = include_str!("../../reports/templates/report.html");
-const STYLE: &str = include_str!("../../reports/templates/report.css");
-const SCRIPT: &str = include_str!("../../reports/templates/report.js");
+pub(super) const STYLE: &str = include_str!("../../reports/templates/report.css");
+pub(super) const SCRIPT: &str = include_str!("../../reports/templates/report.js");
 
 /// What the template is filled in from: the view, and what only HTML needs.
 #[derive(Serialize)]
@@ -101,7 +101,7 @@ pub fn html(findings: &Findings, figures: &ReportFigures) -> Result<String> {
 }
 
 /// Text with its special characters escaped and what stands between backticks as code.
-fn prose(text: &str) -> String {
+pub(super) fn prose(text: &str) -> String {
     let escaped =
         text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;");
     let mut html = String::with_capacity(escaped.len());
@@ -117,12 +117,18 @@ fn prose(text: &str) -> String {
     if inside {
         html.push_str("</code>");
     }
-    html
+    // A number does not part from its sign at a line's end.
+    html.replace(" %", "\u{a0}%")
 }
 
 #[cfg(test)]
 mod tests {
     use super::prose;
+
+    #[test]
+    fn analytic_a_number_keeps_its_percent_sign() {
+        assert_eq!(prose("P = 4 % of"), "P = 4\u{a0}% of");
+    }
 
     #[test]
     fn analytic_backticks_become_code_and_markup_does_not_pass() {

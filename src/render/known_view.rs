@@ -63,11 +63,11 @@ pub(super) fn known(finding: &KnownFinding) -> Known {
             };
             let told = match &stage.untold {
                 Some(why) => {
-                    format!("how much is settled and what P(any breach) then is cannot be told: {why}")
+                    format!("the share of variance resolved and P(any breach) given it cannot be estimated: {why}")
                 }
                 None => format!(
-                    "a share {settled} of the variance of \"breach or not\" is settled; P(any breach) then {} \
-                     in nine cases of ten, about a median of {}",
+                    "a share {settled} of the variance of the breach indicator is resolved; P(any breach) given it {} \
+                     in 90 % of cases (median {})",
                     lies_between(at(0.05), at(0.95)),
                     probability(at(0.5))
                 ),
@@ -77,8 +77,8 @@ pub(super) fn known(finding: &KnownFinding) -> Known {
                 _ => "Once that and the day's measurements are known",
             };
             format!(
-                "{words} ({} inputs), {told} ({} sets of values with {} continuations each, whose own scatter is \
-                 taken out).",
+                "{words} ({} inputs), {told} ({} sets of values with {} continuations each, corrected for their \
+                 sampling error).",
                 stage.inputs,
                 count(stage.sets as u64),
                 stage.continuations

@@ -70,15 +70,15 @@ fn ranking(finding: &MeasuresFinding, found: &RankingFinding) -> Ranking {
     });
     let concordance = found.concordance.map_or(String::new(), |w| {
         format!(
-            "; Kendall's concordance of the rankings is {} (1: all alike, 0: at random)",
+            "; Kendall's concordance of the rankings is {} (1: identical, 0: unrelated)",
             number(w, 2)
         )
     });
     let about = format!(
-        "Ranks of the factors for {} by every measure. {agreement}{concordance}. In brackets: not told from no effect at all. \
+        "Ranks of the factors for {} by every measure. {agreement}{concordance}. In parentheses: not significantly different from zero. \
          S₁ is the first-order index, slope the derivative at the means. \
          The measures reuse the first samples of the run: first order by ranks and regressions {}, Borgonovo's δ and \
-         PAWN {}, HSIC {} (permutation test); Morris' screening has {} trajectories of its own. A group stands in by the \
+         PAWN {}, HSIC {} (permutation test); Morris' screening has {} trajectories of its own. A group is represented by the \
          sum of its members' scores, in SRRC by the spread of its part of the linear model, in PRCC by the multiple \
          partial correlation, for Morris and derivatives by the root of the sum of their squares. Borgonovo's δ has a \
          lower confidence bound only. \

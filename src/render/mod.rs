@@ -14,6 +14,7 @@ mod known_view;
 mod markdown;
 mod measures_view;
 mod model_form_view;
+mod page;
 mod paper;
 mod png;
 mod rig;
@@ -36,9 +37,12 @@ pub use figures::{
 pub use html::html;
 pub use json::json;
 pub use markdown::markdown;
+pub use page::{Mark, page};
 pub use paper::{PaperPage, paper_count, paper_page};
 pub use png::png;
-pub use rig::{rig_comparison_terminal, rig_plan_terminal};
+pub use rig::{
+    rig_comparison_markdown, rig_comparison_terminal, rig_plan_markdown, rig_plan_terminal,
+};
 pub use sweep::{sweep_markdown, sweep_terminal};
 pub use tables::table;
 pub use terminal::{Style, terminal};

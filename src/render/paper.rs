@@ -2,6 +2,7 @@
 
 use super::figures::{Figure, paper_figures, rig_mode_figures, starting_temperature_figure};
 use super::figures_of_speech::value;
+use super::page::anchor;
 use crate::findings::paper::{PaperFinding, Statement, Verdict};
 use crate::units::Quantity;
 
@@ -100,7 +101,7 @@ pub fn paper_page(finding: &PaperFinding, design: &str, command: &str) -> PaperP
     );
     text += &told(statements.iter().filter(|s| s.place.starts_with("rig")));
     for figure in figures.iter().filter(|figure| figure.name.starts_with("rig-")) {
-        text += &format!("\n### {}\n\n{}", figure.title, picture(figure));
+        text += &format!("\n### {}\n\n{}\n", figure.title, figure.markdown().trim_end());
     }
     text += &format!("\n## Made by\n\n```\n{command}\n```\n");
     PaperPage { markdown: text, figures }
@@ -126,24 +127,6 @@ fn link(statement: &Statement, figures: &[Figure]) -> String {
     }
 }
 
-/// The anchor that forges give a heading: lower case, blanks as hyphens, other marks dropped.
-fn anchor(title: &str) -> String {
-    let kept = title.to_lowercase();
-    kept.chars()
-        .filter(|c| c.is_alphanumeric() || *c == ' ' || *c == '-')
-        .map(|c| if c == ' ' { '-' } else { c })
-        .collect()
-}
-
-fn picture(figure: &Figure) -> String {
-    format!(
-        "![{}](figures/{})\n\n{}\n",
-        figure.alternative.replace(['[', ']'], ""),
-        figure.file_name(),
-        figure.caption
-    )
-}
-
 /// Statements as a list with their verdicts and remarks.
 fn told<'a>(statements: impl Iterator<Item = &'a Statement>) -> String {
     let mut text = String::new();
@@ -159,15 +142,5 @@ fn told<'a>(statements: impl Iterator<Item = &'a Statement>) -> String {
 }
 
 fn section<'a>(figure: &Figure, statements: impl Iterator<Item = &'a Statement>) -> String {
-    format!("\n## {}\n\n{}\n{}", figure.title, picture(figure), told(statements))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn analytic_anchors_of_headings() {
-        assert_eq!(anchor("Figure 5: brake torque"), "figure-5-brake-torque");
-    }
+    format!("\n## {}\n\n{}\n\n{}", figure.title, figure.markdown().trim_end(), told(statements))
 }

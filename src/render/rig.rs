@@ -1,7 +1,8 @@
-//! The rig on a terminal: the three modes as test options, and the plan of tests.
+//! The rig in words, on a terminal or as Markdown: the three modes as test options, and the plan of tests.
 
+use super::figures::Figure;
 use super::figures_of_speech::{probability, value};
-use super::tables::table;
+use super::tables::Medium;
 use crate::findings::rig::{Band, Candidate, Combination, Comparison, Instruments, PlanFinding};
 use crate::units::{Quantity, number};
 
@@ -51,7 +52,7 @@ fn instruments(i: &Instruments) -> String {
 fn assumed(assumed: &[String]) -> String {
     match assumed {
         [] => String::new(),
-        some => format!("Assumed, as no option states it: {}.\n", some.join("; ")),
+        some => format!("Assumed, as no option states it: {}.", some.join("; ")),
     }
 }
 
@@ -67,6 +68,20 @@ fn remaining_rows(parameters: &[(String, usize)], cases: &[&[f64]]) -> Vec<Vec<S
 
 /// The three modes compared, for a terminal.
 pub fn rig_comparison_terminal(comparison: &Comparison) -> String {
+    rig_comparison(comparison, Medium::Terminal)
+}
+
+/// The three modes compared, as Markdown; `figures` are files in the directory `figures` beside it.
+pub fn rig_comparison_markdown(comparison: &Comparison, figures: &[Figure]) -> String {
+    let mut text = rig_comparison(comparison, Medium::Markdown);
+    text += "## Course of the runs\n\n";
+    for figure in figures {
+        text += &figure.markdown();
+    }
+    text
+}
+
+fn rig_comparison(comparison: &Comparison, medium: Medium) -> String {
     let modes = &comparison.modes;
     let header: Vec<String> = [String::new()]
         .into_iter()
@@ -112,27 +127,30 @@ pub fn rig_comparison_terminal(comparison: &Comparison) -> String {
             none(),
         ),
     ];
-    let mut text = format!(
-        "The rig's modes as test options, proof load {}\nFlight and runs by the {} model, without accelerations.\n\n{}\n\n",
-        value(comparison.proof_load_n, Quantity::Force),
-        comparison.model,
-        table(&header, 1..header.len(), rows, None)
-    );
-    text += &format!("flight, on the mean over its time: {}\n", means.join(", "));
+    let mut text = medium.title(&format!(
+        "The rig's modes as test options, proof load {}",
+        value(comparison.proof_load_n, Quantity::Force)
+    ));
+    text += &medium.line(&format!(
+        "Flight and runs by the {} model, without accelerations.",
+        comparison.model
+    ));
+    text += &medium.table(&header, 1..header.len(), rows, None);
+    text += &medium.paragraph(&format!("flight, on the mean over its time: {}", means.join(", ")));
     if modes.iter().any(|mode| mode.reduced) {
-        text +=
-            "* the greatest within proof load and the fluid's limit: the flight's mean is not\n";
+        text += &medium.line(
+            "* the greatest within proof load and the fluid's limit: the flight's mean is not",
+        );
     }
     let cases: Vec<&[f64]> = modes.iter().map(|mode| mode.remaining.as_slice()).collect();
     let mut header: Vec<&str> = header;
     header.pop();
     header[0] = "standard deviation left of";
-    text += &format!(
-        "\nCalibration value of one run: what is left of each uncertainty\n\n{}\n\n",
-        table(&header, 1..header.len(), remaining_rows(&comparison.parameters, &cases), None)
-    );
-    text += &format!("Instruments: {}.\n", instruments(&comparison.instruments));
-    text + &assumed(&comparison.assumed)
+    text += &medium.heading("Calibration value of one run: what is left of each uncertainty");
+    let rows = remaining_rows(&comparison.parameters, &cases);
+    text += &medium.table(&header, 1..header.len(), rows, None);
+    text += &medium.paragraph(&format!("Instruments: {}.", instruments(&comparison.instruments)));
+    text + &medium.line(&assumed(&comparison.assumed))
 }
 
 fn run_name(candidate: &Candidate) -> String {
@@ -170,8 +188,8 @@ fn band(band: &Band) -> [String; 3] {
 }
 
 /// What a truck or a crew may not be able to do of what is planned.
-fn practice(plan: &PlanFinding) -> String {
-    let mut text = String::new();
+fn practice(plan: &PlanFinding) -> Vec<String> {
+    let mut lines = Vec::new();
     let width = |c: &Combination| share(c.band.upper - c.band.lower);
     let simpler: Vec<String> = plan
         .without_power
@@ -184,18 +202,18 @@ fn practice(plan: &PlanFinding) -> String {
         })
         .collect();
     if !simpler.is_empty() {
-        text += &format!(
-            "At constant power the driver has to change force and speed all the time. The best plans without it: {}.\n",
+        lines.push(format!(
+            "At constant power the driver has to change force and speed all the time. The best plans without it: {}.",
             simpler.join("; ")
-        );
+        ));
     }
     if plan.candidates.iter().any(|run| (run.start_k - plan.start_k).abs() > 0.1) {
-        text += &format!(
-            "Runs that do not start at {} need the brake cooled or heated to that temperature, all of it.\n",
+        lines.push(format!(
+            "Runs that do not start at {} need the brake cooled or heated to that temperature, all of it.",
             value(plan.start_k, Quantity::Temperature)
-        );
+        ));
     }
-    text
+    lines
 }
 
 /// Where wide tables wrap.
@@ -203,17 +221,28 @@ const WRAP: u16 = 118;
 
 /// A plan of tests, for a terminal.
 pub fn rig_plan_terminal(plan: &PlanFinding) -> String {
+    rig_plan(plan, Medium::Terminal)
+}
+
+/// A plan of tests, as Markdown.
+pub fn rig_plan_markdown(plan: &PlanFinding) -> String {
+    rig_plan(plan, Medium::Markdown)
+}
+
+fn rig_plan(plan: &PlanFinding, medium: Medium) -> String {
     let [now, _, deviation] = band(&plan.now);
     let most = plan.best.len();
-    let mut text = format!(
-        "Which runs on the rig are worth most? Up to {most}, {} combinations of {} candidates, proof load {}\n\n\
-         Without a run P(any breach) of one brake lies within {now} (90 % band, standard deviation \
-         {deviation}); over all brakes it is {} by half spaces.\n\n",
+    let mut text = medium.title(&format!(
+        "Which runs on the rig are worth most? Up to {most}, {} combinations of {} candidates, proof load {}",
         plan.searched,
         plan.candidates.len(),
-        value(plan.proof_load_n, Quantity::Force),
+        value(plan.proof_load_n, Quantity::Force)
+    ));
+    text += &medium.paragraph(&format!(
+        "Without a run P(any breach) of one brake lies within {now} (90 % credible interval, standard deviation \
+         {deviation}); over all brakes it is {} by half spaces.",
         probability(plan.now.mean)
-    );
+    ));
     let mut rows: Vec<Vec<String>> = Vec::new();
     for (k, combinations) in plan.best.iter().enumerate() {
         for (rank, combination) in combinations.iter().enumerate().take(3) {
@@ -222,8 +251,8 @@ pub fn rig_plan_terminal(plan: &PlanFinding) -> String {
             rows.push(vec![count, runs_name(plan, combination), ends, width, deviation]);
         }
     }
-    let header = ["runs", "the best of them", "expected 90 % band of P", "width", "sd of P"];
-    text += &format!("{}\n\n", table(&header, 2..5, rows, Some(WRAP)));
+    let header = ["runs", "the best of them", "expected 90 % interval of P", "width", "sd of P"];
+    text += &medium.table(&header, 2..5, rows, Some(WRAP));
     let best: Vec<&Combination> = plan.best.iter().filter_map(|set| set.first()).collect();
     let cases: Vec<&[f64]> = best.iter().map(|c| c.remaining.as_slice()).collect();
     let counts: Vec<String> =
@@ -232,10 +261,8 @@ pub fn rig_plan_terminal(plan: &PlanFinding) -> String {
         .into_iter()
         .chain(counts.iter().map(String::as_str))
         .collect();
-    text += &format!(
-        "{}\n\n",
-        table(&header, 1..header.len(), remaining_rows(&plan.parameters, &cases), None)
-    );
+    let rows = remaining_rows(&plan.parameters, &cases);
+    text += &medium.table(&header, 1..header.len(), rows, None);
     let rows = plan.candidates.iter().map(|candidate| {
         let [ends, width, deviation] = band(&candidate.band);
         vec![
@@ -253,24 +280,27 @@ pub fn rig_plan_terminal(plan: &PlanFinding) -> String {
         "duration",
         "peak load",
         "peak fluid",
-        "90 % band of P",
+        "90 % interval of P",
         "width",
         "sd",
     ];
-    text += &format!("{}\n\n", table(&header, 1..7, rows, None));
-    for why in &plan.refused {
-        text += &format!("not possible: {why}\n");
-    }
-    for name in &plan.left_out {
-        text += &format!("left out of P: {name}, whose design point was not found\n");
-    }
-    text += &practice(plan);
-    text += &assumed(&plan.assumed);
-    text += &format!(
-        "Instruments: {}.\nThe runs on the rig are by the quasi-steady model.\n\
-         Linear and normal about the card's medians; the model itself is taken as right. The order is that of \
-         the reliability index's standard deviation.\n",
-        instruments(&plan.instruments)
+    text += &medium.table(&header, 1..7, rows, None);
+    let mut lines: Vec<String> =
+        plan.refused.iter().map(|why| format!("not possible: {why}")).collect();
+    lines.extend(
+        plan.left_out
+            .iter()
+            .map(|name| format!("left out of P: {name}, whose design point was not found")),
     );
-    text
+    lines.extend(practice(plan));
+    lines.push(assumed(&plan.assumed));
+    lines.push(format!("Instruments: {}.", instruments(&plan.instruments)));
+    lines.push("The runs on the rig are by the quasi-steady model.".to_owned());
+    lines.push(
+        "Linear and normal about the card's medians; the model itself is taken as right. The order is that of \
+         the reliability index's standard deviation."
+            .to_owned(),
+    );
+    let blank = if medium == Medium::Terminal { "\n" } else { "" };
+    text + blank + &lines.iter().map(|line| medium.line(line)).collect::<String>()
 }

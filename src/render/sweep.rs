@@ -48,8 +48,7 @@ pub fn sweep_markdown(sweep: &SweepFinding, figures: &[Figure]) -> String {
     text += "\n## The design space\n\n";
     for figure in figures {
         text += &format!("### {}\n\n", figure.title);
-        text += &format!("![{}](figures/{})\n\n", figure.alternative, figure.file_name());
-        text += &format!("{}\n\n", figure.caption);
+        text += &figure.markdown();
     }
     text += match sweep.paths.len() {
         1 => "## Value by value\n\n",
@@ -194,7 +193,7 @@ fn best_rows(sweep: &SweepFinding) -> (Vec<String>, Vec<Vec<String>>) {
             header.push("requirement met".to_owned());
         }
     } else {
-        header.push(format!("roomiest {}", chosen.path));
+        header.push(format!("largest-margin {}", chosen.path));
         header.push("smallest margin".to_owned());
     }
     header.push("nominal descent keeps limits".to_owned());
@@ -241,8 +240,8 @@ fn interval(found: &BestFinding, quantity: Quantity) -> String {
         (None, None) => "all breach".to_owned(),
         (None, Some(_)) => match found.unresolved {
             Some(Unresolved::EndOfRange) => "end of the range".to_owned(),
-            Some(Unresolved::NoBreach) => "no breach nearby".to_owned(),
-            Some(Unresolved::NoClearMinimum) | None => "no clear least P".to_owned(),
+            Some(Unresolved::NoBreach) => "no failures".to_owned(),
+            Some(Unresolved::NoClearMinimum) | None => "not resolved".to_owned(),
         },
     }
 }
@@ -269,7 +268,7 @@ fn statements(sweep: &SweepFinding) -> Vec<String> {
         lines.push(match met {
             0 => format!("{required} is demonstrated at no setting."),
             met => format!(
-                "{required} is demonstrated at {} settings, each by itself, by samples that the search has not seen.",
+                "{required} is demonstrated at {} settings, each by itself, by samples independent of the search.",
                 count(met as u64)
             ),
         });
@@ -285,8 +284,8 @@ fn statements(sweep: &SweepFinding) -> Vec<String> {
                 .map(|(path, &v)| format!("`{}` = {}", path.path, value(v, path.quantity)))
                 .collect();
             lines.push(format!(
-                "The smallest P(any breach) found is {} ({}), at {}; estimated anew at points that the search has not \
-                 seen.",
+                "The smallest P(any breach) found is {} ({}), at {}; re-estimated on samples independent of \
+                 the search.",
                 any.value.map_or("unknown".to_owned(), probability),
                 probability_interval(&any.interval),
                 at.join(", ")
@@ -303,7 +302,7 @@ fn best_sentence(sweep: &SweepFinding, chosen: &PathFinding, best: &BestFinding)
     if sweep.samples.is_none() {
         let (at, margin) = best.nominal?;
         return Some(format!(
-            "The nominal descent has most room at `{}` = {}: its smallest margin there is {} of the limit.",
+            "The margin of the nominal descent is largest at `{}` = {}: the smallest margin there is {} of the limit.",
             chosen.path,
             value(at, chosen.quantity),
             share(margin)
@@ -318,7 +317,7 @@ fn best_sentence(sweep: &SweepFinding, chosen: &PathFinding, best: &BestFinding)
     let there = best.probability.as_ref().and_then(|p| p.value).map_or(String::new(), |p| {
         let interval = best.probability.as_ref().map(|p| probability_interval(&p.interval));
         format!(
-            "; P there is {} ({}), estimated anew at points that the search has not seen",
+            "; P there is {} ({}), re-estimated on samples independent of the search",
             probability(p),
             interval.unwrap_or_default()
         )

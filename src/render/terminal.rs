@@ -54,6 +54,9 @@ pub fn terminal(findings: &Findings, style: Style) -> String {
     if let Some(stopping) = &view.stopping {
         text += &format!("{}\n", wrapped(stopping));
     }
+    if let Some(alert) = &findings.exact.alert {
+        text += &format!("{}\n", wrapped(&alert.replace('`', "")));
+    }
     let interval_header = format!("{} interval", view.interval_label);
     if !view.probabilities.is_empty() {
         let interval_header = format!("{} interval", view.probability_label);

@@ -60,7 +60,7 @@ fn step_rows(finding: &TightenFinding) -> Vec<[String; 3]> {
     let mut before: Option<&PlanFinding> = None;
     for (k, step) in finding.steps.iter().enumerate() {
         let what = match before {
-            None => "as it is".to_owned(),
+            None => "present design".to_owned(),
             Some(before) => step_words(before, step, k + 1 == finding.steps.len()),
         };
         rows.push([what, number(step.cost, 3), probability(step.probability)]);
@@ -91,10 +91,10 @@ fn step_words(before: &PlanFinding, step: &PlanFinding, last: bool) -> String {
         .map(|(_, b)| format!("{} = {}", b.path, shown(b.after, &b.path)))
         .collect();
     if last && given_back {
-        return "exchanged and trimmed: the plan".to_owned();
+        return "after local refinement: the plan".to_owned();
     }
     let words: Vec<String> = narrower.into_iter().chain(moved).collect();
-    if words.is_empty() { "trimmed".to_owned() } else { words.join(", ") }
+    if words.is_empty() { "after local refinement".to_owned() } else { words.join(", ") }
 }
 
 fn quantity_of(path: &str) -> Quantity {

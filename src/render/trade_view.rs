@@ -80,8 +80,8 @@ pub(super) fn shares(finding: &ShapleyFinding) -> Shares {
         none: finding.none.clone(),
         too_few: of_breach.and_then(|output| output.too_few.clone()),
         about: format!(
-            "Shapley effects of a breach of any limit: fair shares of its variance that add up to one, also where \
-             inputs are correlated, by {} walks ({} descents). One below zero is zero within its error.",
+            "Shapley effects of a breach of any limit: shares of its variance that add up to one, also where inputs are \
+             correlated, by {} permutations ({} descents). Negative values are consistent with zero.",
             count(finding.walks as u64),
             count(finding.descents)
         ),
@@ -145,7 +145,7 @@ fn design_value(finding: &DesignValueFinding) -> String {
     if finding.best.value.is_none() {
         let why = finding.best.interval.why_none().unwrap_or("it was not found");
         return format!(
-            "With nothing tightened, the best `{}` is not resolved: {why}.",
+            "Without tightening, the optimum of `{}` is not resolved: {why}.",
             finding.path
         );
     }
@@ -162,8 +162,8 @@ fn design_value(finding: &DesignValueFinding) -> String {
         _ => "not found".to_owned(),
     };
     format!(
-        "With nothing tightened, `{}` is best at {best}: P(any breach) {} ({}) there, {} percentage points \
-         against {} now, estimated anew at samples that the search has not seen.",
+        "Without tightening, the optimum of `{}` is {best}: P(any breach) {} ({}) there, {} percentage points \
+         against {} now, re-estimated on samples independent of the search.",
         finding.path,
         percent(&finding.probability),
         probability_interval(&finding.probability.interval),
@@ -174,8 +174,9 @@ fn design_value(finding: &DesignValueFinding) -> String {
 
 /// The trade in words.
 pub(super) fn trade(finding: &TradeFinding) -> Trade {
-    let nothing = (finding.best.is_empty() && finding.none.is_none())
-        .then(|| "No halved spread is shown to lower P(any breach).".to_owned());
+    let nothing = (finding.best.is_empty() && finding.none.is_none()).then(|| {
+        "There is no input whose halved spread lowers P(any breach) significantly.".to_owned()
+    });
     let best = finding.best.iter().map(|found| tightening(found, "")).chain(nothing);
     let best = best.chain(finding.design.iter().map(design_value));
     let values = finding.design.iter().zip(&finding.at_design);

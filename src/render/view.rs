@@ -15,8 +15,9 @@ use super::trade_view::{Shares, Trade, shares, trade};
 use crate::analysis::Findings;
 use crate::descent::OutcomeQuantity;
 use crate::findings::{
-    CONFIDENCE, Decision, EventKind, MarginFinding, Output, RareFinding, VerdictWord,
+    CONFIDENCE, Decision, EventKind, LimitFinding, MarginFinding, Output, RareFinding, VerdictWord,
 };
+use crate::study::NO_SOURCE;
 use crate::units::number;
 use serde::Serialize;
 
@@ -31,6 +32,7 @@ pub(super) struct View {
     pub interval_label: String,
     pub bound_label: String,
     pub probabilities: Vec<ProbabilityRow>,
+    pub limits: Vec<LimitRow>,
     pub statements: Vec<String>,
     pub model_form: Option<ModelFormView>,
     pub demonstration: Option<Demonstration>,
@@ -69,6 +71,12 @@ pub(super) struct ProbabilityRow {
     pub probability: String,
     pub interval: String,
     pub upper: String,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct LimitRow {
+    pub limit: String,
+    pub source: String,
 }
 
 #[derive(Debug, Serialize)]
@@ -173,6 +181,7 @@ pub(super) fn view(findings: &Findings) -> View {
         interval_label: probability(CONFIDENCE),
         bound_label: probability(one_sided),
         probabilities: findings.probabilities.iter().map(probability_row).collect(),
+        limits: findings.limits.iter().map(limit_row).collect(),
         statements: findings
             .probabilities
             .iter()
@@ -290,6 +299,15 @@ fn probability_row(finding: &crate::findings::ProbabilityFinding) -> Probability
         probability: finding.probability.map_or("–".to_owned(), probability),
         interval: probability_interval(&finding.interval),
         upper: upper_end(&finding.upper_bound),
+    }
+}
+
+fn limit_row(finding: &LimitFinding) -> LimitRow {
+    let title = OutcomeQuantity::from_name(finding.outcome).map_or(finding.outcome, |q| q.title());
+    let side = if finding.side == "max" { "at most" } else { "at least" };
+    LimitRow {
+        limit: format!("{title} {side} {}", finding.text),
+        source: finding.source.clone().unwrap_or_else(|| NO_SOURCE.to_owned()),
     }
 }
 

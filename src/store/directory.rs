@@ -25,7 +25,8 @@ const MARKER: &str = "unfinished.json";
 /// The directory of figures in a directory of results.
 const FIGURES: &str = "figures";
 /// What to do about a directory that is not this study's.
-const FORCE: &str = "name another directory with --out, or say --force to replace what is there";
+const FORCE: &str =
+    "name another directory with --out, or use --force (rig: --overwrite) to replace what is there";
 
 /// What a command is going to write.
 #[derive(Debug, Clone, Copy)]

@@ -227,9 +227,14 @@ pub struct Limit {
     pub value: f64,
     /// The limit as written.
     pub text: String,
+    /// Where it comes from, if the study states that.
+    pub source: Option<String>,
     /// Whether the study does not state it: a line that does not run out is a breach whatever else is limited.
     pub implied: bool,
 }
+
+/// What is said of a limit whose source the study does not state.
+pub(crate) const NO_SOURCE: &str = "no source stated";
 
 /// Share of the time limit of a descent that is left below it, so that a descent that was stopped there breaches:
 /// far below what the integrators resolve, far above the rounding of the time.
@@ -243,8 +248,14 @@ impl Limit {
             kind: LimitKind::Max,
             value: TIME_LIMIT_S * (1.0 - ROUNDING),
             text: format!("{TIME_LIMIT_S} s"),
+            source: Some("the longest simulated time: no descent is followed beyond it".to_owned()),
             implied: true,
         }
+    }
+
+    /// Where the limit comes from, or that the study does not state it.
+    pub fn source_text(&self) -> &str {
+        self.source.as_deref().unwrap_or(NO_SOURCE)
     }
 
     /// Whether a margin (SI) of this limit is that of a descent that had not deployed when it was no longer followed.

@@ -11,7 +11,7 @@ use super::vocabulary::{
 mod statements;
 
 use super::read::SHARES;
-use super::{Known, Nature, RareMethod, RequirementOf};
+use super::{Known, LimitKind, Nature, RareMethod, RequirementOf};
 use crate::descent::vector::TOLERANCES;
 use crate::descent::{Model, OutcomeQuantity};
 use crate::physics::parameters::{PARAMETERS, Parameter, ParameterInfo};
@@ -26,9 +26,13 @@ const DRAFT: &str = "https://json-schema.org/draft/2020-12/schema";
 pub fn study() -> Value {
     let mut limits = Map::new();
     for outcome in OutcomeQuantity::ALL {
-        let side = |info: &KeyInfo| described(reference(outcome.quantity()), info.description);
-        let mut limit = table(LIMIT, side, &[]);
-        insert(&mut limit, "minProperties", json!(1));
+        let value = |info: &KeyInfo| match info.name {
+            "source" => text("specification, section 3"),
+            _ => reference(outcome.quantity()),
+        };
+        let mut limit = table(LIMIT, value, &[]);
+        let sides = LimitKind::ALL.map(|side| json!({ "required": [side.name()] }));
+        insert(&mut limit, "anyOf", json!(sides));
         limits.insert(outcome.name().to_owned(), described(limit, outcome.title()));
     }
     let limits = json!({ "type": "object", "properties": limits, "additionalProperties": false });

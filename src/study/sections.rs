@@ -19,6 +19,7 @@ use crate::physics::parameters::{PARAMETERS, Parameter};
 use crate::sampling;
 use crate::units::Quantity;
 use crate::units::spelling::nearest;
+use std::sync::Arc;
 
 /// Descents of a study that does not say how many.
 const DEFAULT_SAMPLES: u64 = 100_000;
@@ -204,12 +205,32 @@ fn limit(key: &Key, value: &Node, example: &str) -> Result<Vec<Limit>> {
         return Err(key.place.error_with(problem, read::one_of(&names, '`'), help));
     };
     let section = Section::new("a limit", &value.place, read::table(value, example)?, keys::LIMIT)?;
+    let source = section.get("source").map(|node| {
+        read::string(node, "where the limit comes from").map(|text| (text.trim().to_owned(), node))
+    });
+    let source = source.transpose()?;
+    // A value that an option puts in place of the file's does not come from where the file's did.
+    let is_of = |source: &Node, limit: &Node| {
+        Arc::ptr_eq(&source.place.text, &limit.place.text)
+            || !Arc::ptr_eq(&source.place.text, &value.place.text)
+    };
     let mut sides = [None, None];
     for (side, kind) in sides.iter_mut().zip(LimitKind::ALL) {
         if let Some(node) = section.get(kind.name()) {
             let value = limit_value(outcome, kind, node)?;
             *side = Some((value, node));
-            limits.push(Limit { outcome, kind, value, text: written(node), implied: false });
+            let source = source
+                .as_ref()
+                .filter(|(_, stated)| is_of(stated, node))
+                .map(|(text, _)| text.clone());
+            limits.push(Limit {
+                outcome,
+                kind,
+                value,
+                text: written(node),
+                source,
+                implied: false,
+            });
         }
     }
     match sides {

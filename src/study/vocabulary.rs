@@ -21,7 +21,7 @@ pub(super) static STUDY: &[KeyInfo] = &[
     ),
     key("model", "the equations that are integrated"),
     key("design", "nominal values that differ from the baseline, by dotted path"),
-    key("limits", "what a descent must not breach: outcome = { max = …, min = … }"),
+    key("limits", "what a descent must not breach: outcome = { max = …, min = …, source = … }"),
     key("requirement", "what the verdict is held against"),
     key("sampling", "how the inputs are sampled"),
     key("numerics", "how accurately a descent is integrated"),
@@ -29,7 +29,7 @@ pub(super) static STUDY: &[KeyInfo] = &[
     key("reliability", "how small probabilities are estimated"),
     key("trade", "how the trade of tolerances is computed"),
     key("tighten", "what a plan of tightenings is to reach, and by which means"),
-    key("epistemic", "how what varies is told apart from what is not known"),
+    key("epistemic", "how aleatory and epistemic uncertainty are separated"),
 ];
 
 /// Keys of `[epistemic]`.
@@ -107,6 +107,7 @@ pub(super) static GRADE: &[KeyInfo] =
 pub(super) static LIMIT: &[KeyInfo] = &[
     key("max", "the outcome may be at most this"),
     key("min", "the outcome must be at least this"),
+    key("source", "where the limit comes from; a limit that is assumed says so"),
 ];
 
 /// Keys at the top of a card that are not parameters.

@@ -22,7 +22,7 @@ fn property_the_report_begins_with_the_verdict_and_ends_with_how_to_reproduce_it
         "## How probable",
         "## What margin",
         "## What drives",
-        "## Samples apart",
+        "## Failed and non-deployed samples",
         "## What is uncertain",
         "## Method and caveats",
         "## To reproduce",

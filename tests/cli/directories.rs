@@ -114,9 +114,11 @@ fn regression_what_is_not_this_studys_is_replaced_with_force_only() {
     run(&place, "mine", &few).ended_with(3);
     // With force, what the other study had and this one has not is gone.
     reeldown(&[&sweep[..], &["--force"]].concat()).ended_with(0);
-    for gone in ["outcomes.parquet", "findings.json", "report.html", "provenance.json"] {
+    for gone in ["outcomes.parquet", "findings.json", "provenance.json"] {
         assert!(!place.path().join("mine").join(gone).exists(), "{gone} is of the run before");
     }
+    let page = String::from_utf8(place.bytes("mine/report.html")).expect("UTF-8");
+    assert!(page.contains(">Design space<"), "the page is the sweep's");
     assert_eq!(place.bytes("mine/data.csv"), b"1,2\n");
 }
 

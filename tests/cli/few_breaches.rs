@@ -25,11 +25,11 @@ fn regression_a_handful_of_breaches_ranks_nothing_and_has_no_band() {
     assert!(why.contains("of 2048 descents breach: at least 10"), "{why}");
     assert!(outputs.iter().filter(|o| o["breach"] == false).all(|o| o["too_few"].is_null()));
     let report = String::from_utf8(place.bytes("run/report.md")).expect("text");
-    assert!(report.contains("No fair shares of a breach: "), "{report}");
+    assert!(report.contains("No Shapley effects of a breach: "), "{report}");
     assert!(report.contains("No ranking: ") && !report.contains("figures/drivers-breach-any"));
     assert!(
         report.contains(
-            "how much is settled and what P(any breach) then is cannot be told: it happened with"
+            "the share of variance resolved and P(any breach) given it cannot be estimated: it happened with"
         ),
         "{report}"
     );

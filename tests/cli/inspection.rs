@@ -135,3 +135,22 @@ fn property_an_empirical_law_reads_a_column_of_a_parquet_file() {
         readings.iter().fold((f64::INFINITY, 0.0f64), |(l, h), &v| (l.min(v), h.max(v)));
     assert!(low < mean && mean < high, "{low} {mean} {high}");
 }
+
+#[test]
+fn property_every_input_and_outcome_is_explained() {
+    let listed = reeldown(&["explain"]).ended_with(0).out;
+    let object = reeldown(&["check", "--json"]).ended_with(0).json();
+    for input in object["inputs"].as_array().expect("a list") {
+        let path = input["path"].as_str().expect("a path");
+        assert!(listed.contains(path), "{path} in {listed}");
+        let told = reeldown(&["explain", path]).ended_with(0).out;
+        let source = input["source"].as_str().expect("a source");
+        for part in ["what it is", "unit", "possible", "HABE brake", "law", source] {
+            assert!(told.contains(part), "{part}: {told}");
+        }
+    }
+    let time = reeldown(&["explain", "time"]).ended_with(0).out;
+    assert!(time.contains("time_s") && time.contains("max 210 s"), "{time}");
+    let near = reeldown(&["explain", "brake.gpa"]).ended_with(1);
+    assert!(near.err.contains("did you mean `reeldown explain brake.gap`?"), "{}", near.err);
+}

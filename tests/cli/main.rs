@@ -16,6 +16,7 @@ mod inspection;
 mod interruption;
 mod listed;
 mod notes;
+mod pages;
 mod program;
 mod published;
 mod readers;

@@ -2,6 +2,7 @@
 
 mod figures;
 mod html;
+mod limits;
 mod measures;
 mod numbers;
 mod read_back;

@@ -49,6 +49,24 @@ fn property_an_override_reaches_every_part_of_a_study() {
 }
 
 #[test]
+fn property_a_limit_that_an_option_moves_does_not_come_from_where_the_file_says() {
+    let source = |overrides: &[&str]| {
+        let study = shipped(overrides).unwrap_or_else(|error| panic!("{error}"));
+        study.limits[0].source.clone()
+    };
+    assert!(source(&[]).is_some_and(|source| source.starts_with("paper")));
+    assert_eq!(source(&["limits.time.max=200 s"]), None);
+    let own = Some("my own".to_owned());
+    assert_eq!(source(&["limits.time.source=my own"]), own);
+    assert_eq!(source(&["limits.time.max=200 s", "limits.time.source=my own"]), own);
+    assert_eq!(source(&["limits.time={max=\"200 s\", source=\"my own\"}"]), own);
+    // The other side of the limit is still the file's.
+    let study = shipped(&["limits.time.min=60 s"]).expect("a study");
+    let sources: Vec<bool> = study.limits.iter().take(2).map(|l| l.source.is_some()).collect();
+    assert_eq!(sources, [true, false]);
+}
+
+#[test]
 fn property_fewer_rotors_have_fewer_uncertain_gaps() {
     assert_eq!(shipped(&["brake.rotors=2"]).expect("a study").inputs.len(), 4 + 9);
 }

@@ -63,6 +63,8 @@ fn reference_jsonschema_accepts_good_texts_and_refuses_what_a_schema_can_see() {
         "study_limit_unknown_outcome",
         "study_limit_not_a_table",
         "study_limit_empty",
+        "study_limit_source_alone",
+        "study_limit_source_number",
         "study_requirement_certain",
         "study_requirement_incomplete",
         "study_requirement_without_limits",

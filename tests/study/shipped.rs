@@ -77,6 +77,22 @@ fn published_the_card_is_the_table_of_what_is_uncertain() {
 }
 
 #[test]
+fn published_every_limit_of_the_shipped_studies_states_its_source() {
+    let calibrated = include_str!("../../reports/calibrated/study.toml");
+    let of_embedded = Study::load(None, &[]).expect("the embedded study is good").limits;
+    for (outcome, begins) in [
+        (OutcomeQuantity::Time, "paper: "),
+        (OutcomeQuantity::PeakFluidTemperature, "paper: "),
+        // The paper states no value: this one is invented, and a reader of the report must see that.
+        (OutcomeQuantity::FinalVelocity, "assumed: "),
+    ] {
+        let limit = of_embedded.iter().find(|limit| limit.outcome == outcome).expect("a limit");
+        assert!(limit.source_text().starts_with(begins), "{}", limit.source_text());
+        assert!(calibrated.contains(limit.source_text()), "{}", limit.source_text());
+    }
+}
+
+#[test]
 fn property_margins_are_negative_beyond_the_limit() {
     let study = shipped(&["limits.time.min=1 min"]).expect("a study");
     let mut outcome = Outcome { deployed: true, values: [0.0; 10] };
@@ -167,6 +183,9 @@ fn property_the_digest_sees_numbers_and_not_their_spelling() {
     let base = "title = \"a\"\ncard = \"habe.toml\"\n[limits]\ntime = { max = \"210 s\" }\n";
     let respelt = "# b\ncard = [\"habe.toml\"]\ntitle = \"b\"\nlimits.time.max = \"3.5 min\"\nmodel = \"dynamic\"\n";
     assert_eq!(digest(base), digest(respelt));
+    let sourced = base.replace("210 s\" }", "210 s\", source = \"paper\" }");
+    assert_ne!(sourced, base);
+    assert_eq!(digest(base), digest(&sourced));
     for change in [
         "limits.time.max=211 s",
         "sampling.seed=7",

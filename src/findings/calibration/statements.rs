@@ -20,7 +20,7 @@ pub(super) fn suspicion(channel: Channel, suspicion: &Suspicion) -> String {
         }
         Suspicion::Outlier { time_s, value: si, deviations } => format!(
             "{} at {} s stands {} robust standard deviations off its neighbours: an outlier? \
-             --heavy-tails bears it",
+             --heavy-tails allows for it",
             value(*si),
             seconds(*time_s),
             number(*deviations, 3)
@@ -30,7 +30,7 @@ pub(super) fn suspicion(channel: Channel, suspicion: &Suspicion) -> String {
             value(*si),
             seconds(*from_s),
             seconds(*to_s),
-            if *at_the_stop { "a sensor at its stop?" } else { "a sensor that hangs?" }
+            if *at_the_stop { "a sensor at its stop?" } else { "a sensor that hung?" }
         ),
         Suspicion::Unit { ratio, factor, mistake } => format!(
             "readings are {} times what the card predicts; {} would be {mistake}: is a unit in the header wrong?",
@@ -70,12 +70,12 @@ pub(super) fn statements(finding: &CalibrationFinding) -> Vec<String> {
     let diagnosis = &finding.diagnosis;
     if finding.converged && !finding.doubts.is_empty() {
         said.push(format!(
-            "The sampler has converged, but the posterior may not be believed: {}.",
+            "The sampler has converged, but the posterior is in doubt: {}.",
             finding.doubts.join("; ")
         ));
     } else if finding.converged {
         said.push(format!(
-            "The posterior may be believed: {} draws, {:.0} effective, R-hat at most {:.3}, ln evidence {:.2} ± {:.2}.",
+            "Posterior diagnostics passed: {} draws, {:.0} effective, R-hat at most {:.3}, ln evidence {:.2} ± {:.2}.",
             finding.draws,
             diagnosis.effective,
             diagnosis.worst_r_hat,
@@ -84,15 +84,15 @@ pub(super) fn statements(finding: &CalibrationFinding) -> Vec<String> {
         ));
     } else {
         said.push(format!(
-            "The posterior may not be believed, and no card is written: {}. Try more --particles.",
+            "Posterior diagnostics failed, and no card is written: {}. Try more --particles.",
             diagnosis.failures.join("; ")
         ));
     }
     let made_up = finding.runs.iter().filter(|run| run.synthetic).count();
     if made_up > 0 {
         said.push(format!(
-            "The data are synthetic: {} of {} runs were made up from a known brake and measure nothing. What follows shows \
-             the method, not a brake.",
+            "The data are synthetic: {} of {} runs were generated from a known brake, not measured. What follows \
+             demonstrates the method, not a brake.",
             made_up,
             finding.runs.len()
         ));
@@ -102,22 +102,24 @@ pub(super) fn statements(finding: &CalibrationFinding) -> Vec<String> {
         let names: Vec<String> = chosen
             .map(|p| match dominated {
                 true => p.name.clone(),
-                false => format!("{} (−{:.0} % of its variance)", p.name, 100.0 * p.learned),
+                false => format!("{} {:.0} %", p.name, 100.0 * p.learned),
             })
             .collect();
         names.join(", ")
     };
     let (learned, dominated) = (names(false), names(true));
     if !learned.is_empty() {
-        said.push(format!("The runs taught: {learned}."));
+        said.push(format!("Identified by the data, prior variance reduced by: {learned}."));
     }
     if !dominated.is_empty() {
-        said.push(format!("Prior-dominated, what the runs could not teach: {dominated}."));
+        said.push(format!(
+            "Not identified by the data, the posterior is about the prior: {dominated}."
+        ));
     }
     if let Some((before, after)) = &finding.risk {
         let band = |band: [f64; 3]| format!("{} … {}", percent(band[0]), percent(band[2]));
         said.push(format!(
-            "P(any breach) moves from {} (band over brakes {}) to {} ({}).",
+            "P(any breach) moves from {} (90 % credible interval over brakes {}) to {} ({}).",
             percent(before.probability),
             band(before.band),
             percent(after.probability),
@@ -131,7 +133,7 @@ pub(super) fn statements(finding: &CalibrationFinding) -> Vec<String> {
             .map(|check| format!("{} {}", check.channel, percent(check.coverage)))
             .collect();
         said.push(format!(
-            "Of the held-out readings the {} bands hold: {}.",
+            "Coverage of the {} predictive bands on held-out readings: {}.",
             percent(held[0].expected),
             shares.join(", ")
         ));
@@ -144,13 +146,13 @@ pub(super) fn statements(finding: &CalibrationFinding) -> Vec<String> {
         .collect();
     if !off.is_empty() {
         said.push(format!(
-            "The model is too sure of itself: its bands hold too few readings of {}.",
+            "The predictive bands are too narrow: they hold too few readings of {}.",
             off.join(", ")
         ));
     }
     if let Some(best) = finding.next.as_ref().and_then(|next| next.tests.first()) {
         said.push(format!(
-            "Most worth measuring next: {} ({}), which is expected to leave {} of the band's width.",
+            "Most informative next measurement: {} ({}); expected width of the interval: {} of today's.",
             best.name,
             best.detail,
             percent(best.width_left)

@@ -51,12 +51,13 @@ fn shrinkage(finding: &CalibrationFinding) -> Option<Figure> {
         chart.bar((ends[0], at - 0.2), (ends[1], at + 0.2), BLUE, 0.6, hover);
         chart.dots(&[(scaled(p, p.quantiles[1]), at)], INK, 3.5, 1.0);
     }
-    let title = "What each parameter learned".to_owned();
+    let title = "Prior and posterior of each parameter".to_owned();
     let most = shown.iter().max_by(|a, b| a.learned.total_cmp(&b.learned))?;
     let caption =
-        "Where the posterior is as wide as the prior, the runs taught nothing.".to_owned();
+        "Where the posterior is as wide as the prior, the data do not identify the parameter."
+            .to_owned();
     let alternative = format!(
-        "Prior and posterior intervals of {} parameters; {} learned most, {:.0} % of its variance.",
+        "Prior and posterior intervals of {} parameters; best identified: {}, whose prior variance is reduced by {:.0} %.",
         shown.len(),
         most.name,
         100.0 * most.learned

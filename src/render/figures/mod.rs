@@ -62,6 +62,16 @@ impl Figure {
     pub fn file_name(&self) -> String {
         format!("{}.svg", self.name)
     }
+
+    /// The figure in a Markdown report beside the directory `figures`, with its caption.
+    pub(super) fn markdown(&self) -> String {
+        format!(
+            "![{}](figures/{})\n\n{}\n\n",
+            self.alternative.replace(['[', ']'], ""),
+            self.file_name(),
+            self.caption
+        )
+    }
 }
 
 /// Where in a report figures go.
