@@ -27,35 +27,50 @@ pub const CSV_HEADER: &str = "method,problem,probability,first_seed,seeds,stated
 /// samples of each method.
 pub fn answer(method: Method, benchmark: &Benchmark, seed: u64, effort: f64) -> Estimate {
     let (state, event) = (&benchmark.limits, benchmark.event);
-    let search = SearchOptions { seed, ..SearchOptions::seeded(0) };
+    let search = SearchOptions::seeded(seed);
     let share = |samples: f64| (samples * effort) as u64;
     match method {
         Method::CrudeMonteCarlo => {
-            let options = CrudeOptions { seed, samples: share(1e5), ..Default::default() };
+            let options = CrudeOptions { seed, samples: share(1e5), ..CrudeOptions::seeded(seed) };
             crude_monte_carlo(state, event, &options)
         }
         Method::ImportanceSampling => {
-            let options =
-                ImportanceOptions { seed, search, samples: share(2e4), ..Default::default() };
+            let options = ImportanceOptions {
+                seed,
+                search,
+                samples: share(2e4),
+                ..ImportanceOptions::seeded(seed)
+            };
             importance_sampling(state, event, &options).map(|(estimate, _)| estimate)
         }
         Method::SubsetSimulation => {
             let samples_per_level = share(1e3) as usize;
-            let options = SubsetOptions { seed, samples_per_level, ..Default::default() };
+            let options = SubsetOptions { seed, samples_per_level, ..SubsetOptions::seeded(seed) };
             subset_simulation(state, event, &options)
         }
         Method::LineSampling => {
-            let options =
-                LineOptions { seed, search, lines: share(32.0).max(8), ..Default::default() };
+            let options = LineOptions {
+                seed,
+                search,
+                lines: share(32.0).max(8),
+                ..LineOptions::seeded(seed)
+            };
             line_sampling(state, event, &options)
         }
         Method::DirectionalSampling => {
-            let options = DirectionalOptions { seed, directions: share(2e3), ..Default::default() };
+            let options = DirectionalOptions {
+                seed,
+                directions: share(2e3),
+                ..DirectionalOptions::seeded(seed)
+            };
             directional_sampling(state, event, &options)
         }
         Method::CrossEntropy => {
-            let options =
-                CrossEntropyOptions { seed, final_samples: share(2e4), ..Default::default() };
+            let options = CrossEntropyOptions {
+                seed,
+                final_samples: share(2e4),
+                ..CrossEntropyOptions::seeded(seed)
+            };
             cross_entropy(state, event, &options)
         }
         _ => panic!("{} states no interval", method.name()),
