@@ -4,7 +4,8 @@
 //! `cargo run --release --example habe_rare` writes `reports/certificates/habe_rare.md`: the default study with
 //! `fluid.nominal_viscosity` and `reliability.methods` set, the same page every time.
 
-use reeldown::campaign::{self, Progress, Record};
+use reeldown::analysis::Sampling;
+use reeldown::campaign::{self, Progress};
 use reeldown::error::{Error, Result};
 use reeldown::findings::{self, RareFinding};
 use reeldown::reliability::agreement::agreement;
@@ -72,11 +73,7 @@ fn study(viscosity: &str) -> Result<Study> {
 /// What the report of such a run says of rare breaches.
 fn rare(study: &Study) -> Result<Vec<RareFinding>> {
     let progress = Progress::default();
-    let mut record = Record::new(study, 1)?;
-    campaign::run(study, 0..study.sampling.samples, &progress, &mut |table| {
-        record.absorb(&table);
-        Ok(())
-    })?;
+    let record = Sampling::of(study, &progress)?.record;
     let events = campaign::rare_events(study, &record, &progress)?;
     Ok(findings::rare_findings(study, &events, campaign::nominal(study).as_ref().ok()))
 }

@@ -51,7 +51,6 @@ mod architecture {
         &["campaign/refutation", "campaign/tighten"],
         &["campaign/scores", "campaign/trade"],
         &["cli/arguments", "cli/calibrate_arguments", "cli/rig_arguments"],
-        &["findings/compare", "findings/compare_findings", "findings/compare_studies"],
         &["findings/derivatives", "findings/design_value", "findings/trade"],
         &["findings/rare", "findings/story"],
         &["findings/sweep", "findings/sweep_best"],

@@ -52,21 +52,20 @@ pub struct Plan {
     pub most_moves: usize,
 }
 
-impl Default for Plan {
-    fn default() -> Self {
+impl Plan {
+    /// The usual plan, with the seed of every stream.
+    pub fn seeded(seed: u64) -> Self {
         Plan {
             particles: 1000,
             replicates: 4,
-            seed: 1993,
+            seed,
             forgotten: 0.2,
             forgotten_at_last: 0.1,
             least_last_moves: 15,
             most_moves: 120,
         }
     }
-}
 
-impl Plan {
     /// The pilot's plan: the same particles, moved just enough to follow the path.
     pub(super) fn pilot(&self) -> Self {
         Plan { forgotten: 0.5, forgotten_at_last: 0.3, least_last_moves: 15, ..*self }

@@ -1,10 +1,10 @@
 //! What a calibration changed: the study under the cards before the calibrated one, beside the study as it is.
 
+use super::analysis::{Absent, Analysis, Found, Run, find};
 use super::common_numbers::{Breaches, Change, CommonSample};
-use super::epistemic::{EpistemicOutcomes, run_epistemic};
-use super::{Progress, Record};
+use super::epistemic::EpistemicOutcomes;
 use crate::error::Result;
-use crate::study::Study;
+use crate::study::{Input, Study};
 
 /// Samples of either study at most.
 const SAMPLES: u64 = 50_000;
@@ -32,48 +32,64 @@ pub struct CalibratedOutcomes {
     /// Breaches under all cards, on as many samples of the same seed.
     pub posterior: Breaches,
     /// Nested descents under the prior cards, or why there are none.
-    pub epistemic: std::result::Result<EpistemicOutcomes, String>,
+    pub epistemic: Found<EpistemicOutcomes>,
     /// Breaches of the sample behind the swaps, as it is.
     pub base: Breaches,
     /// Every changed input with its prior law instead.
     pub swapped: Vec<Swapped>,
 }
 
-/// Runs a calibrated study under its prior cards. `None` if no card of it is a calibrated one after others, it has no
-/// limit, or `progress` asks for a stop.
-///
-/// # Errors
-/// What the samples refuse.
-pub fn run_calibrated(
-    study: &Study,
-    record: &Record,
-    progress: &Progress,
-) -> Result<Option<CalibratedOutcomes>> {
-    let Some(before) = study.prior.as_deref().filter(|_| !study.limits.is_empty()) else {
-        return Ok(None);
+impl Analysis<'_> for CalibratedOutcomes {
+    const NAME: &'static str = "the study before its calibration";
+
+    fn cost(study: &Study) -> Found<u64> {
+        let before = before(study)?;
+        Absent::unless_limited(study)?;
+        let nested = EpistemicOutcomes::cost(before).unwrap_or(0);
+        let swaps = SWAP_SAMPLES.min(study.sampling.samples) * swaps(study, before).len() as u64;
+        Ok(2 * SAMPLES.min(study.sampling.samples) + nested + swaps)
+    }
+
+    fn compute(run: Run<'_>) -> Result<Option<Self>> {
+        match before(run.study) {
+            Ok(before) => run_calibrated(run, before),
+            Err(_) => Ok(None),
+        }
+    }
+}
+
+/// The study under the cards before its calibrated one.
+fn before(study: &Study) -> Found<&Study> {
+    study.prior.as_deref().ok_or(Absent::NotCalibrated)
+}
+
+/// Places of the inputs whose law changed, in the study and in the one before.
+fn swaps(study: &Study, before: &Study) -> Vec<(usize, usize)> {
+    let place = |(input, after): (usize, &Input)| {
+        let prior = before.inputs.iter().position(|old| old.target == after.target)?;
+        let changed = before.inputs[prior].law_canonical != after.law_canonical;
+        changed.then_some((input, prior))
     };
+    study.inputs.iter().enumerate().filter_map(place).collect()
+}
+
+fn run_calibrated(run: Run<'_>, before: &Study) -> Result<Option<CalibratedOutcomes>> {
+    let Run { study, record, progress } = run;
     let available = record.counts().samples();
     let sample = CommonSample::of_run(before, SAMPLES.min(available))?;
     let (prior, replicates) = (sample.base(progress)?, sample.replicates());
     let posterior = Breaches::from_margins(study.limits.len(), sample.rows(), |i, k| {
         record.margins(i).get(k).copied().unwrap_or(f64::NAN)
     });
-    let epistemic = match run_epistemic(before, progress) {
-        Ok(Some(found)) => Ok(found),
-        Ok(None) => Err("the study asks for none (epistemic.outer = 0)".to_owned()),
-        Err(reason) => Err(reason.to_string()),
+    let Some(epistemic) = find::<EpistemicOutcomes>(Run { study: before, ..run }) else {
+        return Ok(None);
     };
     let sample = CommonSample::of_run(study, SWAP_SAMPLES.min(available))?;
     let base = sample.base(progress)?;
     let mut swapped = Vec::new();
-    for (input, after) in study.inputs.iter().enumerate() {
+    for (input, prior) in swaps(study, before) {
         if progress.stopping() {
             return Ok(None);
-        }
-        let found = before.inputs.iter().position(|old| old.target == after.target);
-        let Some(prior) = found else { continue };
-        if before.inputs[prior].law_canonical == after.law_canonical {
-            continue;
         }
         let marginals = vec![(input, before.inputs[prior].marginal.clone())];
         let breaches = sample.changed(&Change { marginals, ..Change::default() }, progress)?;

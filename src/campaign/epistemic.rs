@@ -1,8 +1,9 @@
 //! What varies from flight to flight and what is not known, told apart by nested descents.
 
+use super::analysis::{Absent, Analysis, Found, Run};
 use super::trade::trade_factors;
 use super::{Ensemble, Progress};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::numerics::columns::Columns;
 use crate::numerics::special::normal;
 use crate::reliability::nested::{
@@ -35,15 +36,30 @@ pub struct EpistemicOutcomes {
     pub share_size: (usize, usize),
 }
 
-/// Descents that this takes.
-pub fn epistemic_descents(study: &Study) -> u64 {
-    let plan = study.epistemic;
-    if plan.outer == 0 || study.limits.is_empty() {
-        return 0;
+impl Analysis<'_> for EpistemicOutcomes {
+    const NAME: &'static str = "what is not known";
+
+    /// Something must vary, and something must be unknown.
+    fn cost(study: &Study) -> Found<u64> {
+        let plan = study.epistemic;
+        Absent::unless_asked("epistemic.outer", plan.outer)?;
+        Absent::unless_limited(study)?;
+        let unwatched = Progress::default();
+        let state = NestedDescents::new(study, &unwatched)?;
+        if state.unknown.is_empty() {
+            return Err(Absent::NothingUnknown);
+        }
+        if state.unknown.len() == state.dimension() {
+            return Err(Absent::NothingVaries);
+        }
+        let (rows, inner) = share_size(study);
+        let factors = trade_factors(study).len();
+        Ok(plan.outer * plan.inner + (rows * inner * (4 + factors)) as u64)
     }
-    let (rows, inner) = share_size(study);
-    let factors = trade_factors(study).len();
-    plan.outer * plan.inner + (rows * inner * (4 + factors)) as u64
+
+    fn compute(run: Run<'_>) -> Result<Option<Self>> {
+        run_epistemic(run.study, run.progress)
+    }
 }
 
 fn share_size(study: &Study) -> (usize, usize) {
@@ -52,28 +68,13 @@ fn share_size(study: &Study) -> (usize, usize) {
     (rows as usize, (plan.inner / SHARE_INNER).max(4) as usize)
 }
 
-/// Computes the nested descents of a study. `None` if it asks for none, has no limit, or `progress` asks
-/// for a stop.
+/// Computes the nested descents of a study. `None` if `progress` asks for a stop.
 ///
 /// # Errors
-/// If everything varies, or nothing does; then the message is the reason.
+/// If the copula of its inputs cannot be conditioned.
 pub fn run_epistemic(study: &Study, progress: &Progress) -> Result<Option<EpistemicOutcomes>> {
     let plan = study.epistemic;
-    if plan.outer == 0 || study.limits.is_empty() {
-        return Ok(None);
-    }
     let state = NestedDescents::new(study, progress)?;
-    if state.unknown.is_empty() {
-        return Err(Error::argument(
-            "the card says of every input that it varies from flight to flight, and nothing is unknown",
-        ));
-    }
-    if state.unknown.len() == state.dimension() {
-        return Err(Error::argument(
-            "the card says of no input that it varies from flight to flight: with what is unknown, a breach \
-             is decided",
-        ));
-    }
     let seed = study.sampling.seed;
     let half = (plan.inner / 2) as usize;
     let sample = nested_sample(&state, plan.outer as usize, half, seed)?;

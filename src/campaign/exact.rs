@@ -1,5 +1,6 @@
 //! What the values that are taken as exact do to the breaches: each moved a little, at the same points.
 
+use super::analysis::{Absent, Analysis, Found, Run};
 use super::common_numbers::{Breaches, Change, CommonSample};
 use super::{Progress, factors};
 use crate::error::Result;
@@ -61,25 +62,23 @@ fn step(value: f64, parameter: Parameter) -> Option<f64> {
     [step, -step].into_iter().find(|step| info.admits(value + step))
 }
 
-/// Descents that this takes, about.
-pub fn exact_descents(study: &Study) -> u64 {
-    match study.limits.is_empty() {
-        true => 0,
-        false => {
-            ROWS.min(study.sampling.samples)
-                * (1 + exact(study).len() + factors(study).len()) as u64
-        }
+impl Analysis<'_> for ExactOutcomes {
+    const NAME: &'static str = "exact values";
+
+    fn cost(study: &Study) -> Found<u64> {
+        Absent::unless_limited(study)?;
+        let moves = 1 + exact(study).len() + factors(study).len();
+        Ok(ROWS.min(study.sampling.samples) * moves as u64)
+    }
+
+    fn compute(run: Run<'_>) -> Result<Option<Self>> {
+        run_exact(run.study, run.progress)
     }
 }
 
-/// Moves every exact value and the mean of every input. `None` without a limit, or if `progress` asks for a stop.
-///
-/// # Errors
-/// What the sampler refuses, and a value that does not fit the study.
-pub fn run_exact(study: &Study, progress: &Progress) -> Result<Option<ExactOutcomes>> {
-    if study.limits.is_empty() {
-        return Ok(None);
-    }
+/// Moves every exact value and the mean of every input. `None` if `progress` asks for a stop. An error is what the
+/// sampler refuses, and a value that does not fit the study.
+fn run_exact(study: &Study, progress: &Progress) -> Result<Option<ExactOutcomes>> {
     let sample = CommonSample::of_run(study, ROWS)?;
     let base = sample.base(progress)?;
     let mut values = Vec::new();

@@ -3,6 +3,7 @@
 //! A sample is a function of its index, so its draw and its outcomes are computed again instead of kept. How
 //! many are read is fixed before the run: it does not depend on where an adaptive run stopped.
 
+use super::analysis::{Absent, Analysis, Found, Run};
 use super::common_numbers::{Breaches, CommonSample, Event};
 use super::{Ensemble, Progress, Record, factors, in_parallel};
 use crate::error::Result;
@@ -47,23 +48,20 @@ pub struct Breaching {
     pub among: u64,
 }
 
-/// Descents that this takes, about.
-pub fn given_descents(study: &Study) -> u64 {
-    if study.sensitivity.base_samples == 0 { 0 } else { ROWS.min(study.sampling.samples) }
+impl Analysis<'_> for GivenSample {
+    const NAME: &'static str = "samples once more";
+
+    fn cost(study: &Study) -> Found<u64> {
+        Absent::unless_asked("sensitivity.base_samples", study.sensitivity.base_samples)?;
+        Ok(ROWS.min(study.sampling.samples))
+    }
+
+    fn compute(run: Run<'_>) -> Result<Option<Self>> {
+        run_given(run.study, run.record, run.progress).map(Some)
+    }
 }
 
-/// Reads the samples of a finished run again. `None` if the study asks for no sensitivity.
-///
-/// # Errors
-/// What the sampler refuses.
-pub fn run_given(
-    study: &Study,
-    record: &Record,
-    progress: &Progress,
-) -> Result<Option<GivenSample>> {
-    if study.sensitivity.base_samples == 0 {
-        return Ok(None);
-    }
+fn run_given(study: &Study, record: &Record, progress: &Progress) -> Result<GivenSample> {
     let sample = CommonSample::of_run(study, ROWS)?;
     let table = Ensemble::new(study).at_inputs(sample.inputs(), progress);
     let breaches = Breaches::of(study, &table);
@@ -89,7 +87,7 @@ pub fn run_given(
     });
     let breaching = breaching.collect::<Result<_>>()?;
     let inputs = 0..study.inputs.len();
-    Ok(Some(GivenSample {
+    Ok(GivenSample {
         scores: scores(&sample, &factors),
         values: inputs.map(|j| sample.inputs().column(j).to_vec()).collect(),
         outcomes: table.outcomes,
@@ -97,7 +95,7 @@ pub fn run_given(
         breaching,
         replicates: sample.replicates(),
         factors,
-    }))
+    })
 }
 
 /// Every input by itself, also of those drawn together, then every group of several as one.

@@ -2,6 +2,7 @@
 //! day, and given a measured value.
 
 use super::Progress;
+use super::analysis::{Absent, Analysis, Found, Run};
 use super::common_numbers::{Breaches, Change, CommonSample, Event};
 use crate::error::Result;
 use crate::numerics::columns::Columns;
@@ -76,17 +77,26 @@ pub struct KnownOutcomes {
     pub samples: u64,
 }
 
-/// Descents that this takes, about.
-pub fn known_descents(study: &Study) -> u64 {
-    let rows = study.trade.samples.min(study.sampling.samples);
-    let days = measured(study).len() as u64;
-    let columns = match (days, lot(study)) {
-        (0, _) | (1, None) => 0,
-        (1, Some(_)) => SETTINGS,
-        _ => COARSE,
-    };
-    let maps = (COARSE * columns) as u64 * map_rows(rows);
-    2 * outer(rows) * INNER as u64 + days * SETTINGS as u64 * rows + maps
+impl Analysis<'_> for KnownOutcomes {
+    const NAME: &'static str = "what becomes known when";
+
+    fn cost(study: &Study) -> Found<u64> {
+        Absent::unless_asked("trade.samples", study.trade.samples)?;
+        Absent::unless_limited(study)?;
+        let rows = study.trade.samples.min(study.sampling.samples);
+        let days = measured(study).len() as u64;
+        let columns = match (days, lot(study)) {
+            (0, _) | (1, None) => 0,
+            (1, Some(_)) => SETTINGS,
+            _ => COARSE,
+        };
+        let maps = (COARSE * columns) as u64 * map_rows(rows);
+        Ok(2 * outer(rows) * INNER as u64 + days * SETTINGS as u64 * rows + maps)
+    }
+
+    fn compute(run: Run<'_>) -> Result<Option<Self>> {
+        run_known(run.study, run.progress)
+    }
 }
 
 fn outer(rows: u64) -> u64 {
@@ -101,15 +111,12 @@ fn measured(study: &Study) -> Vec<usize> {
 }
 
 /// Computes what is known when, on no more samples than the study has at most, wherever it stopped. `None` if
-/// the study asks for no trade, has no limit, or `progress` asks for a stop.
+/// `progress` asks for a stop.
 ///
 /// # Errors
 /// If the inputs' dependence cannot be conditioned.
 pub fn run_known(study: &Study, progress: &Progress) -> Result<Option<KnownOutcomes>> {
     let rows = study.trade.samples.min(study.sampling.samples);
-    if rows == 0 || study.limits.is_empty() {
-        return Ok(None);
-    }
     let mut stages = Vec::new();
     for known in [Known::AtBuild, Known::OnTheDay] {
         let given: Vec<usize> =

@@ -4,6 +4,7 @@
 //! the work is cut into batches of fixed size at fixed places, and whatever is summed is summed in the
 //! order of the samples, so that nothing depends on the number of threads.
 
+pub mod analysis;
 mod breaches;
 pub mod calibrated;
 pub mod calibration;
@@ -35,11 +36,13 @@ use crate::streams::Purpose;
 use crate::study::Study;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
+pub use analysis::{Absent, Analysis, Found, Run};
 pub use evaluate::{Ensemble, nominal};
 pub use limit_state::DescentLimitState;
 pub use looks::{Looks, RowGroups};
-pub use pick_freeze::{CORRELATED, PickFreezeOutcomes, factors, run_pick_freeze};
+pub use pick_freeze::{PickFreezeOutcomes, factors};
 pub use rare::{FEW_BREACHES, MostLikelyBreach, RareEvent, rare_events};
 pub use record::{FaultedSample, OutcomeSummary, Record};
 pub use verification::{NEAR, NearLimit, Verification, verify};
@@ -52,6 +55,18 @@ pub const ROW_GROUP: u64 = 65_536;
 pub struct Progress {
     done: AtomicU64,
     stop: AtomicBool,
+    stage: Mutex<Stage>,
+}
+
+/// A part of the work that is named and has an end.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Stage {
+    /// What it is.
+    pub name: &'static str,
+    /// Descents computed before it began.
+    pub before: u64,
+    /// Descents that it takes, about.
+    pub descents: u64,
 }
 
 impl Progress {
@@ -68,6 +83,17 @@ impl Progress {
     /// Whether a stop has been asked for.
     pub fn stopping(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Begins a part of the work that takes so many descents, about.
+    pub fn begin(&self, name: &'static str, descents: u64) {
+        let stage = Stage { name, before: self.done(), descents };
+        *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = stage;
+    }
+
+    /// The part of the work that is being done.
+    pub fn stage(&self) -> Stage {
+        *self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn advance(&self, descents: usize) {

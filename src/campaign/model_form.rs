@@ -1,8 +1,9 @@
 //! The same samples by the other thermal model: what the form of the model is worth.
 
+use super::analysis::{Absent, Analysis, Found, Run};
 use super::breaches::Breaches;
 use super::common_numbers::CommonSample;
-use super::{Progress, nominal};
+use super::nominal;
 use crate::descent::{Fault, Model, Outcome};
 use crate::error::Result;
 use crate::study::Study;
@@ -32,32 +33,30 @@ pub struct ModelFormOutcomes {
     pub forms: [Form; 2],
 }
 
-/// Descents that this takes.
-pub fn model_form_descents(study: &Study) -> u64 {
-    if study.limits.is_empty() { 0 } else { 2 * SAMPLES.min(study.sampling.samples) }
-}
+impl Analysis<'_> for ModelFormOutcomes {
+    const NAME: &'static str = "model form";
 
-/// Flies the first samples of a study by both thermal models, three nodes and films resolved, with the study's model of
-/// motion. `None` if the study has no limit or `progress` asks for a stop.
-///
-/// # Errors
-/// What the samples refuse.
-pub fn run_model_form(study: &Study, progress: &Progress) -> Result<Option<ModelFormOutcomes>> {
-    if study.limits.is_empty() {
-        return Ok(None);
+    fn cost(study: &Study) -> Found<u64> {
+        Absent::unless_limited(study)?;
+        Ok(2 * SAMPLES.min(study.sampling.samples))
     }
-    let mut other = study.clone();
-    other.model = study.model.with_other_heat();
-    other.numerics.tolerance = study.numerics.tolerance.max(TOLERANCE);
-    let rows = SAMPLES.min(study.sampling.samples);
-    let own = CommonSample::of_run(study, rows)?;
-    let replicates = own.replicates();
-    let form =
-        |study: &Study, breaches| Form { model: study.model, nominal: nominal(study), breaches };
-    let own = form(study, own.base(progress)?);
-    let breaches = CommonSample::of_run(&other, rows)?.base(progress)?;
-    if progress.stopping() {
-        return Ok(None);
+
+    /// Flies the first samples of a study by both thermal models, three nodes and films resolved, with the study's model of
+    /// motion.
+    fn compute(Run { study, progress, .. }: Run<'_>) -> Result<Option<Self>> {
+        let mut other = study.clone();
+        other.model = study.model.with_other_heat();
+        other.numerics.tolerance = study.numerics.tolerance.max(TOLERANCE);
+        let rows = SAMPLES.min(study.sampling.samples);
+        let own = CommonSample::of_run(study, rows)?;
+        let replicates = own.replicates();
+        let form = |study: &Study, breaches| Form {
+            model: study.model,
+            nominal: nominal(study),
+            breaches,
+        };
+        let own = form(study, own.base(progress)?);
+        let breaches = CommonSample::of_run(&other, rows)?.base(progress)?;
+        Ok(Some(ModelFormOutcomes { replicates, forms: [own, form(&other, breaches)] }))
     }
-    Ok(Some(ModelFormOutcomes { replicates, forms: [own, form(&other, breaches)] }))
 }

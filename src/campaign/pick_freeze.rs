@@ -1,8 +1,9 @@
 //! The pick-freeze design of a study, evaluated: outcomes of every block.
 
+use super::analysis::{Absent, Analysis, Found, Run};
 use super::{Ensemble, Progress};
 use crate::descent::OutcomeQuantity;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::numerics::columns::Columns;
 use crate::sampling::{Design, Sampler};
 use crate::sensitivity::pick_freeze::{Factor, Plan};
@@ -51,33 +52,34 @@ pub fn factors(study: &Study) -> Vec<Factor> {
         }
     }
     let groups = groups.into_iter().filter(|(_, columns)| columns.len() > 1);
-    let grouped = groups.map(|(name, columns)| {
-        let drawn = columns.iter().any(|&k| study.joint.sample_of(k).is_some());
-        let name = if drawn { name.to_owned() } else { format!("{name} (all)") };
-        Factor { name, columns }
-    });
+    let grouped = groups.map(|(name, columns)| Factor { name: name.to_owned(), columns });
     single.chain(grouped).collect()
 }
 
-/// Evaluates the pick-freeze design of a study. `None` if the study asks for none, or `progress` for a
-/// stop.
-///
-/// # Errors
-/// If inputs are correlated, for which Sobol' indices have no meaning.
-pub fn run_pick_freeze(study: &Study, progress: &Progress) -> Result<Option<PickFreezeOutcomes>> {
+impl Analysis<'_> for PickFreezeOutcomes {
+    const NAME: &'static str = "sensitivity";
+
+    /// Sobol' indices of inputs that are correlated have no meaning.
+    fn cost(study: &Study) -> Found<u64> {
+        let rows = study.sensitivity.base_samples;
+        Absent::unless_asked("sensitivity.base_samples", rows)?;
+        if !study.joint.is_independent() {
+            return Err(Absent::Correlated);
+        }
+        let (factors, pairs) = (factors(study).len(), study.sensitivity.pairs.len());
+        Ok(rows * (2 + factors + pairs) as u64)
+    }
+
+    fn compute(run: Run<'_>) -> Result<Option<Self>> {
+        run_pick_freeze(run.study, run.progress)
+    }
+}
+
+fn run_pick_freeze(study: &Study, progress: &Progress) -> Result<Option<PickFreezeOutcomes>> {
     let rows = study.sensitivity.base_samples;
-    if rows == 0 {
-        return Ok(None);
-    }
-    if !study.joint.is_independent() {
-        return Err(Error::argument(CORRELATED));
-    }
     let inputs = study.inputs.len();
     let plan = Plan::new(rows as usize, inputs, factors(study))?;
-    let place = |name: &String| {
-        let is = |factor: &Factor| factor.name.trim_end_matches(" (all)") == *name;
-        plan.factors().iter().rposition(is)
-    };
+    let place = |name: &String| plan.factors().iter().rposition(|factor| factor.name == *name);
     let pairs = study.sensitivity.pairs.iter();
     let pairs: Vec<(usize, usize)> =
         pairs.filter_map(|(one, other)| Some((place(one)?, place(other)?))).collect();
@@ -102,7 +104,3 @@ pub fn run_pick_freeze(study: &Study, progress: &Progress) -> Result<Option<Pick
     }
     Ok(Some(PickFreezeOutcomes { plan, blocks, faults }))
 }
-
-/// Why there are no indices when inputs are correlated.
-pub const CORRELATED: &str = "Sobol' indices divide the variance among independent inputs; these are \
-    correlated, so a share of it belongs to several at once and the indices would mislead";

@@ -1,5 +1,6 @@
 //! Probabilities that the samples alone cannot show: the reliability methods on a study's descents.
 
+use super::analysis::{Analysis, Found, Run};
 use super::{DescentLimitState, Progress, Record};
 use crate::descent::{Fault, Outcome};
 use crate::error::Result;
@@ -21,12 +22,13 @@ use crate::reliability::sorm::{SormOptions, sorm};
 use crate::reliability::subset::{SubsetOptions, subset_simulation};
 use crate::reliability::system::system_form;
 use crate::sampling::Design;
-use crate::study::Study;
+use crate::study::{RareMethod, Study};
 
 /// Below this many breaches the samples alone say little, and other methods are asked as well.
 pub const FEW_BREACHES: u64 = 50;
 /// The methods that are asked unless the study names some.
-const DEFAULT_METHODS: [&str; 2] = ["subset-simulation", "importance-sampling"];
+const DEFAULT_METHODS: [RareMethod; 2] =
+    [RareMethod::SubsetSimulation, RareMethod::ImportanceSampling];
 /// Risk at which methods that are all right are said to disagree.
 const FAMILY_RISK: f64 = 0.01;
 
@@ -56,6 +58,37 @@ pub struct MostLikelyBreach {
     pub flight: std::result::Result<Outcome, Fault>,
 }
 
+/// Descents that a method takes for an event, about.
+const DESCENTS: u64 = 10_000;
+
+impl Analysis<'_> for Vec<RareEvent> {
+    const NAME: &'static str = "rare events";
+
+    /// At most: which events were seen too rarely is known when the samples have been run.
+    fn cost(study: &Study) -> Found<u64> {
+        let methods = methods(study).len();
+        Ok(DESCENTS * (methods * candidates(study).len()) as u64)
+    }
+
+    fn compute(run: Run<'_>) -> Result<Option<Self>> {
+        rare_events(run.study, run.record, run.progress).map(Some)
+    }
+}
+
+/// The methods that are asked.
+fn methods(study: &Study) -> &[RareMethod] {
+    study.reliability.methods.as_deref().unwrap_or(&DEFAULT_METHODS)
+}
+
+/// The events that may be asked about: every limit, if the study names methods all pairs of limits, and any of them.
+fn candidates(study: &Study) -> Vec<Event> {
+    let limits = study.limits.len();
+    let each = (0..limits).map(Event::Limit);
+    let pairs = (0..limits).flat_map(|i| (i + 1..limits).map(move |j| Event::Both(i, j)));
+    let pairs = pairs.filter(|_| study.reliability.methods.is_some());
+    each.chain(pairs).chain((limits > 1).then_some(Event::Any)).collect()
+}
+
 /// Asks the reliability methods about every limit, and any of them, that the samples saw too rarely or, if the
 /// study names methods, about every limit, all pairs of limits and any of them. Stops early, with what there is, if `progress` says so.
 ///
@@ -64,15 +97,8 @@ pub struct MostLikelyBreach {
 pub fn rare_events(study: &Study, record: &Record, progress: &Progress) -> Result<Vec<RareEvent>> {
     let limits = study.limits.len();
     let counts = record.counts();
-    let chosen = study.reliability.methods.as_deref();
-    let methods: Vec<&str> = match chosen {
-        Some(methods) => methods.iter().map(String::as_str).collect(),
-        None => DEFAULT_METHODS.to_vec(),
-    };
-    let each = (0..limits).map(Event::Limit);
-    let pairs = (0..limits).flat_map(|i| (i + 1..limits).map(move |j| Event::Both(i, j)));
-    let pairs = pairs.filter(|_| chosen.is_some());
-    let events = each.chain(pairs).chain((limits > 1).then_some(Event::Any)).filter(|&event| {
+    let methods = methods(study);
+    let events = candidates(study).into_iter().filter(|&event| {
         let seen = seen(counts, event);
         // Of the limit that no study states, a search is worth it where samples showed that it can be breached.
         let implied = |members: Vec<usize>| members.iter().any(|&i| study.limits[i].implied);
@@ -80,7 +106,7 @@ pub fn rare_events(study: &Study, record: &Record, progress: &Progress) -> Resul
         if unstated && seen.is_none_or(|seen| seen.breaches == 0) {
             return false;
         }
-        chosen.is_some() || seen.is_some_and(|seen| seen.breaches < FEW_BREACHES)
+        study.reliability.methods.is_some() || seen.is_some_and(|seen| seen.breaches < FEW_BREACHES)
     });
     let state = DescentLimitState::new(study, progress);
     let mut found = Vec::new();
@@ -88,18 +114,22 @@ pub fn rare_events(study: &Study, record: &Record, progress: &Progress) -> Resul
         if progress.stopping() || methods.is_empty() {
             break;
         }
-        found.push(rare_event(study, record, &state, event, &methods)?);
+        found.push(rare_event(study, record, &state, event, methods)?);
     }
     Ok(found)
 }
 
 /// The method, if it goes by slopes of the margins.
-fn needs_slopes(method: &str) -> Option<Method> {
+fn needs_slopes(method: RareMethod) -> Option<Method> {
     match method {
-        "form" => Some(Method::Form),
-        "sorm" => Some(Method::SormBreitung),
-        "line-sampling" => Some(Method::LineSampling),
-        _ => None,
+        RareMethod::Form => Some(Method::Form),
+        RareMethod::Sorm => Some(Method::SormBreitung),
+        RareMethod::LineSampling => Some(Method::LineSampling),
+        RareMethod::Crude
+        | RareMethod::ImportanceSampling
+        | RareMethod::SubsetSimulation
+        | RareMethod::DirectionalSampling
+        | RareMethod::CrossEntropy => None,
     }
 }
 
@@ -135,14 +165,14 @@ fn rare_event(
     record: &Record,
     state: &DescentLimitState,
     event: Event,
-    methods: &[&str],
+    methods: &[RareMethod],
 ) -> Result<RareEvent> {
     let seed = study.sampling.seed;
-    let search = SearchOptions { seed, ..SearchOptions::default() };
+    let search = SearchOptions::seeded(seed);
     let mut estimates = Vec::new();
     let mut points: Option<DesignPoints> = None;
     if study.sampling.design == Design::MonteCarlo {
-        let confidence = ImportanceOptions::default().confidence;
+        let confidence = ImportanceOptions::seeded(seed).confidence;
         if let Some(seen) = seen(record.counts(), event) {
             let mut crude = crude::from_counts(event, seen, confidence)?;
             if study.sampling.stopping.is_some() {
@@ -159,7 +189,7 @@ fn rare_event(
             continue;
         }
         match method {
-            "form" => {
+            RareMethod::Form => {
                 let (estimate, found) = match event {
                     Event::Limit(i) => form(state, i, &search)?,
                     _ => system_form(state, event, &search)?,
@@ -167,9 +197,9 @@ fn rare_event(
                 estimates.push(estimate);
                 points.get_or_insert(found);
             }
-            "sorm" => match event {
+            RareMethod::Sorm => match event {
                 Event::Limit(i) => {
-                    let options = SormOptions { search: search.clone(), ..SormOptions::default() };
+                    let options = SormOptions::seeded(seed);
                     let (second, found) = sorm(state, i, &options)?;
                     estimates.extend([second.breitung, second.hohenbichler_rackwitz]);
                     points.get_or_insert(found);
@@ -180,35 +210,30 @@ fn rare_event(
                     "SORM has no formula for several limits",
                 )),
             },
-            "importance-sampling" => {
-                let options = ImportanceOptions {
-                    seed,
-                    search: search.clone(),
-                    ..ImportanceOptions::default()
-                };
+            RareMethod::ImportanceSampling => {
+                let options = ImportanceOptions::seeded(seed);
                 let (estimate, found) = importance_sampling(state, event, &options)?;
                 estimates.push(estimate);
                 points.get_or_insert(found);
             }
-            "subset-simulation" => {
-                let options = SubsetOptions { seed, ..SubsetOptions::default() };
+            RareMethod::SubsetSimulation => {
+                let options = SubsetOptions::seeded(seed);
                 estimates.push(subset_simulation(state, event, &options)?);
             }
-            "line-sampling" => {
-                let options =
-                    LineOptions { seed, search: search.clone(), ..LineOptions::default() };
+            RareMethod::LineSampling => {
+                let options = LineOptions::seeded(seed);
                 estimates.push(line_sampling(state, event, &options)?);
             }
-            "directional-sampling" => {
-                let options = DirectionalOptions { seed, ..DirectionalOptions::default() };
+            RareMethod::DirectionalSampling => {
+                let options = DirectionalOptions::seeded(seed);
                 estimates.push(directional_sampling(state, event, &options)?);
             }
-            "cross-entropy" => {
-                let options = CrossEntropyOptions { seed, ..CrossEntropyOptions::default() };
+            RareMethod::CrossEntropy => {
+                let options = CrossEntropyOptions::seeded(seed);
                 estimates.push(cross_entropy(state, event, &options)?);
             }
-            // "crude" is the samples themselves, which are there already.
-            _ => {}
+            // The samples themselves are there already.
+            RareMethod::Crude => {}
         }
     }
     let most_likely = points.as_ref().and_then(|found| {

@@ -1,7 +1,8 @@
 //! Morris' screening of a study, and the derivatives of its outcomes at the nominal design and at the means
 //! of its laws.
 
-use super::{Ensemble, Progress};
+use super::Ensemble;
+use super::analysis::{Absent, Analysis, Found, Run};
 use crate::descent::Fault;
 use crate::descent::gradient::{Gradient, gradient};
 use crate::descent::vector::Settings;
@@ -24,31 +25,25 @@ pub struct ScreeningOutcomes {
     pub outcomes: Columns,
 }
 
-/// Descents that a screening takes.
-pub fn screening_descents(study: &Study) -> u64 {
-    if study.sensitivity.base_samples == 0 {
-        return 0;
-    }
-    ((study.inputs.len() + 1) * TRAJECTORIES) as u64
-}
+impl Analysis<'_> for ScreeningOutcomes {
+    const NAME: &'static str = "screening";
 
-/// Evaluates the screening. `None` if the study asks for no sensitivity. Each input moves by its own law, whatever
-/// its correlation with others.
-///
-/// # Errors
-/// If nothing is uncertain.
-pub fn run_screening(study: &Study, progress: &Progress) -> Result<Option<ScreeningOutcomes>> {
-    if study.sensitivity.base_samples == 0 {
-        return Ok(None);
+    fn cost(study: &Study) -> Found<u64> {
+        Absent::unless_asked("sensitivity.base_samples", study.sensitivity.base_samples)?;
+        Ok(((study.inputs.len() + 1) * TRAJECTORIES) as u64)
     }
-    let screening = Screening::new(study.inputs.len(), TRAJECTORIES, study.sampling.seed)?;
-    let points = screening.points();
-    let mut inputs = Columns::new(points.rows(), points.columns());
-    for (j, input) in study.inputs.iter().enumerate() {
-        input.marginal.quantile_column(points.column(j), inputs.column_mut(j));
+
+    /// Each input moves by its own law, whatever its correlation with others.
+    fn compute(Run { study, progress, .. }: Run<'_>) -> Result<Option<Self>> {
+        let screening = Screening::new(study.inputs.len(), TRAJECTORIES, study.sampling.seed)?;
+        let points = screening.points();
+        let mut inputs = Columns::new(points.rows(), points.columns());
+        for (j, input) in study.inputs.iter().enumerate() {
+            input.marginal.quantile_column(points.column(j), inputs.column_mut(j));
+        }
+        let table = Ensemble::new(study).at_inputs(&inputs, progress);
+        Ok(Some(ScreeningOutcomes { screening, outcomes: table.outcomes }))
     }
-    let table = Ensemble::new(study).at_inputs(&inputs, progress);
-    Ok(Some(ScreeningOutcomes { screening, outcomes: table.outcomes }))
 }
 
 /// Derivatives of the outcomes with respect to every input, then to every design value that may move, SI.

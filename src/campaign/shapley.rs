@@ -1,5 +1,6 @@
 //! The walks of the Shapley effects of a study, evaluated.
 
+use super::analysis::{Absent, Analysis, Found, Run};
 use super::trade::trade_factors;
 use super::{Ensemble, Progress};
 use crate::error::Result;
@@ -25,21 +26,23 @@ pub struct ShapleyOutcomes {
     pub outcomes: Columns,
 }
 
-/// Descents that this takes.
-pub fn shapley_descents(study: &Study) -> u64 {
-    study.sensitivity.base_samples * (trade_factors(study).len() as u64 + 1)
+impl Analysis<'_> for ShapleyOutcomes {
+    const NAME: &'static str = "Shapley effects";
+
+    fn cost(study: &Study) -> Found<u64> {
+        let orders = study.sensitivity.base_samples;
+        Absent::unless_asked("sensitivity.base_samples", orders)?;
+        Ok(orders * (trade_factors(study).len() as u64 + 1))
+    }
+
+    fn compute(run: Run<'_>) -> Result<Option<Self>> {
+        run_shapley(run.study, run.progress)
+    }
 }
 
-/// Evaluates the walks of a study, one for each row of its pick-freeze design. `None` if it asks for none,
-/// or `progress` for a stop.
-///
-/// # Errors
-/// If there are too few rows.
-pub fn run_shapley(study: &Study, progress: &Progress) -> Result<Option<ShapleyOutcomes>> {
+/// Evaluates the walks of a study, one for each row of its pick-freeze design. `None` if `progress` asks for a stop.
+fn run_shapley(study: &Study, progress: &Progress) -> Result<Option<ShapleyOutcomes>> {
     let orders = study.sensitivity.base_samples as usize;
-    if orders == 0 {
-        return Ok(None);
-    }
     let factors = trade_factors(study);
     let dimension = study.inputs.len();
     let correlation: Option<Vec<Vec<f64>>> = study.joint.copula().map(|copula| {

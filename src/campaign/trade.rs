@@ -1,6 +1,7 @@
 //! P(breach) against the spread and the mean of every input, and against a design value: reruns of one
 //! sample with common random numbers; and the sums that its derivatives are made from.
 
+use super::analysis::{Absent, Analysis, Found, Run};
 use super::common_numbers::{Breaches, Change, CommonSample, Event};
 use super::scores::{FactorScores, scores};
 use super::{Progress, Record, factors};
@@ -43,14 +44,7 @@ pub fn trade_factors(study: &Study) -> Vec<Factor> {
                 && factor.columns.iter().all(|column| other.columns.contains(column))
         })
     };
-    let mut kept: Vec<Factor> = all
-        .iter()
-        .filter(|factor| !member(factor))
-        .map(|factor| Factor {
-            name: factor.name.trim_end_matches(" (all)").to_owned(),
-            columns: factor.columns.clone(),
-        })
-        .collect();
+    let mut kept: Vec<Factor> = all.iter().filter(|factor| !member(factor)).cloned().collect();
     kept.sort_by_key(|factor| factor.columns.first().copied());
     kept
 }
@@ -158,17 +152,25 @@ fn sizes(study: &Study) -> (u64, u64) {
     (study.trade.samples.min(most), (factor * study.trade.samples).min(most))
 }
 
-/// Descents that the trade of a study takes, about.
-pub fn trade_descents(study: &Study) -> u64 {
-    let factors = trade_factors(study).len() as u64;
-    let (rows, headline) = sizes(study);
-    let curves = factors * (SPREADS.len() + SHIFTS.len()) as u64;
-    let sweeps = study.tighten.design.len() as u64 * (2 * SWEEP as u64) + factors + 1;
-    rows * (1 + curves + sweeps) + headline * 5 * HEADLINES as u64
+impl<'a> Analysis<'a> for TradeOutcomes<'a> {
+    const NAME: &'static str = "trade of tolerances";
+
+    fn cost(study: &Study) -> Found<u64> {
+        Absent::unless_asked("trade.samples", study.trade.samples)?;
+        Absent::unless_limited(study)?;
+        let factors = trade_factors(study).len() as u64;
+        let (rows, headline) = sizes(study);
+        let curves = factors * (SPREADS.len() + SHIFTS.len()) as u64;
+        let sweeps = study.tighten.design.len() as u64 * (2 * SWEEP as u64) + factors + 1;
+        Ok(rows * (1 + curves + sweeps) + headline * 5 * HEADLINES as u64)
+    }
+
+    fn compute(run: Run<'a>) -> Result<Option<Self>> {
+        run_trade(run.study, run.record, run.progress)
+    }
 }
 
-/// Computes the trade of a study whose samples have been run. `None` if the study asks for none, has no
-/// limit, or `progress` asks for a stop.
+/// Computes the trade of a study whose samples have been run. `None` if `progress` asks for a stop.
 ///
 /// # Errors
 /// If a law cannot be moved or stretched as the curves need it.
@@ -177,9 +179,6 @@ pub fn run_trade<'a>(
     record: &Record,
     progress: &Progress,
 ) -> Result<Option<TradeOutcomes<'a>>> {
-    if study.trade.samples == 0 || study.limits.is_empty() {
-        return Ok(None);
-    }
     let (rows, headline) = sizes(study);
     let sample = CommonSample::of_run(study, rows)?;
     let factors = trade_factors(study);

@@ -1,14 +1,13 @@
 //! `reeldown calibrate`: rig runs in, a posterior card out.
 
 use super::calibrate_arguments::CalibrateArguments;
-use super::command_line::quoted;
+use super::command_line::CommandLine;
 use super::figure_files::write_report_figures;
 use super::output::{say, say_error, say_notes};
-use super::watch::{Watch, stop_on_interrupt};
+use super::watch::{carry_out, interruptible};
 use super::{Ending, done};
 use crate::campaign::calibration::duplicates::refuse_twice;
 use crate::campaign::calibration::{self, Calibration, Channel, Options, is_hardware};
-use crate::campaign::{self, Progress};
 use crate::descent::driven::Drive;
 use crate::error::{Error, Result};
 use crate::findings::calibration::{self as findings, CalibrationFinding};
@@ -18,7 +17,6 @@ use crate::study::measured_run::Acceptance;
 use crate::study::{MeasuredRun, Study, sha256};
 use crate::units;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// The findings as one tree.
 const FINDINGS: &str = "findings.json";
@@ -69,13 +67,11 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
             )));
         }
     }
-    let progress = Arc::new(Progress::default());
-    stop_on_interrupt(&progress)?;
-    let found = campaign::with_threads(arguments.threads.asked(), || {
-        let _watch =
-            Watch::start(&progress, calibration::about(&options, &calibrated), "calibrating");
-        calibration::calibrate(&study, &calibrated, &unseen, &options, &progress)
-    })??;
+    let progress = interruptible()?;
+    let found = carry_out(&progress, arguments.threads.asked(), |progress| {
+        progress.begin("calibrating", calibration::about(&options, &calibrated));
+        calibration::calibrate(&study, &calibrated, &unseen, &options, progress)
+    })?;
     let Some(found) = found else {
         say_error("stopped before the posterior was found: nothing is written");
         return Ok(Ending::Interrupted);
@@ -121,8 +117,7 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Result<Ending> {
 }
 
 fn options(arguments: &CalibrateArguments, study: &Study) -> Result<Options> {
-    let mut options = Options::default();
-    options.plan.seed = study.sampling.seed;
+    let mut options = Options::seeded(study.sampling.seed);
     if let Some(particles) = arguments.particles {
         options.plan.particles = particles as usize;
     }
@@ -268,37 +263,23 @@ fn write_cards(
 
 /// The command that gives the same numbers.
 fn command(arguments: &CalibrateArguments) -> String {
-    let mut words = vec!["reeldown".to_owned(), "calibrate".to_owned()];
-    if let Some(study) = &arguments.study.study {
-        words.push(quoted(&study.display().to_string()));
-    }
-    let path = |path: &PathBuf| quoted(&path.display().to_string());
-    words.extend(arguments.data.iter().map(|data| format!("--data {}", path(data))));
-    words.extend(arguments.hold_out.iter().map(|data| format!("--hold-out {}", path(data))));
-    let text = [
-        ("--drive", &arguments.drive),
-        ("--discrepancy", &arguments.discrepancy),
-        ("--seed", &arguments.seed),
-    ];
-    for (option, value) in text {
-        words.extend(value.iter().map(|value| format!("{option} {}", quoted(value))));
-    }
-    let stated = [
-        ("--sensor-sd", &arguments.sensor_sd),
-        ("--gain-sd", &arguments.gain_sd),
-        ("--offset-sd", &arguments.offset_sd),
-    ];
-    for (option, statements) in stated {
-        words.extend(statements.iter().map(|sd| format!("{option} {}", quoted(sd))));
-    }
-    words.extend(arguments.heavy_tails.iter().map(|df| format!("--heavy-tails {df}")));
-    words.extend(arguments.particles.iter().map(|n| format!("--particles {n}")));
-    words.extend(arguments.replicates.iter().map(|n| format!("--replicates {n}")));
-    for (flag, given) in [("--gaps", arguments.gaps), ("--accept", arguments.accept)] {
-        if given {
-            words.push(flag.to_owned());
-        }
-    }
-    words.extend(arguments.study.set.iter().map(|set| format!("--set {}", quoted(set))));
-    words.join(" ")
+    let named = |paths: &[PathBuf]| -> Vec<String> {
+        paths.iter().map(|path| path.display().to_string()).collect()
+    };
+    CommandLine::new("calibrate", &arguments.study)
+        .option("--data", named(&arguments.data))
+        .option("--hold-out", named(&arguments.hold_out))
+        .option("--drive", &arguments.drive)
+        .option("--discrepancy", &arguments.discrepancy)
+        .option("--seed", &arguments.seed)
+        .option("--sensor-sd", &arguments.sensor_sd)
+        .option("--gain-sd", &arguments.gain_sd)
+        .option("--offset-sd", &arguments.offset_sd)
+        .option("--heavy-tails", arguments.heavy_tails)
+        .option("--particles", arguments.particles)
+        .option("--replicates", arguments.replicates)
+        .flag("--gaps", arguments.gaps)
+        .flag("--accept", arguments.accept)
+        .set(&arguments.study)
+        .line()
 }

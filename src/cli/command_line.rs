@@ -1,18 +1,49 @@
 //! Commands as a person would type them.
 
-use super::arguments::SampledStudy;
+use super::arguments::{SampledStudy, StudyArguments};
+
+/// A command that gives the same numbers again.
+#[derive(Debug, Clone)]
+pub(super) struct CommandLine(String);
+
+impl CommandLine {
+    /// A command, and its study if one is named.
+    pub fn new(name: &str, study: &StudyArguments) -> Self {
+        let study = study.study.as_ref().map(|path| quoted(&path.display().to_string()));
+        CommandLine(format!("reeldown {name}")).words(study)
+    }
+
+    /// An option with each of its values.
+    pub fn option<V: ToString>(self, name: &str, values: impl IntoIterator<Item = V>) -> Self {
+        self.words(values.into_iter().map(|v| format!("{name} {}", quoted(&v.to_string()))))
+    }
+
+    /// An option without a value, if it was given.
+    pub fn flag(self, name: &str, given: bool) -> Self {
+        self.words(given.then(|| name.to_owned()))
+    }
+
+    /// What `--set` changes.
+    pub fn set(self, study: &StudyArguments) -> Self {
+        self.option("--set", &study.set)
+    }
+
+    /// The command as one line.
+    pub fn line(self) -> String {
+        self.0
+    }
+
+    fn words(mut self, words: impl IntoIterator<Item = String>) -> Self {
+        words.into_iter().for_each(|word| self.0 += &format!(" {word}"));
+        self
+    }
+}
 
 /// The command that computes a study on this machine.
 pub(super) fn run_of(sampled: &SampledStudy) -> String {
-    let mut words = vec!["reeldown".to_owned(), "run".to_owned()];
-    if let Some(study) = &sampled.study.study {
-        words.push(quoted(&study.display().to_string()));
-    }
-    for (option, value) in [("--samples", &sampled.samples), ("--seed", &sampled.seed)] {
-        words.extend(value.iter().map(|value| format!("{option} {}", quoted(value))));
-    }
-    words.extend(sampled.study.set.iter().map(|s| format!("--set {}", quoted(s))));
-    words.join(" ")
+    let command = CommandLine::new("run", &sampled.study);
+    let command = command.option("--samples", &sampled.samples).option("--seed", &sampled.seed);
+    command.set(&sampled.study).line()
 }
 
 /// A word of a command line, quoted if the shell would take it apart.

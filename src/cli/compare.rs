@@ -3,16 +3,14 @@
 use super::arguments::CompareArguments;
 use super::output::say;
 use super::{Ending, done, parentage};
+use crate::analysis::compare::{FinishedRun, compare as findings};
+use crate::analysis::{Findings, Unreadable};
 use crate::campaign::ROW_GROUP;
 use crate::error::{Error, Result};
-use crate::findings::compare::{FinishedRun, compare as findings};
 use crate::render::{self, Mark};
 use crate::store::{OutcomesReader, refuse_unfinished, verify_listed, write_text};
-use serde_json::Value;
 use std::path::Path;
 
-/// The layout of `findings.json` that this version reads.
-const FORMAT: u64 = 1;
 const HELP: &str = "name the directories of two runs that `reeldown run` has finished";
 
 /// Reads two runs, compares and shows them.
@@ -51,19 +49,24 @@ fn read(directory: &Path) -> Result<FinishedRun> {
     refuse_unfinished(directory, "compare")?;
     let bytes = std::fs::read(&json).map_err(|why| Error::file(&json, "read", why, HELP))?;
     verify_listed(directory, "findings.json", &bytes)?;
-    let findings: Value = serde_json::from_slice(&bytes)
-        .map_err(|why| Error::file(&json, "read", format!("it is not JSON: {why}"), HELP))?;
-    let made_by = findings["reproduction"]["version"].as_str().unwrap_or("an unknown version");
-    if findings["format"].as_u64() != Some(FORMAT) || made_by != env!("CARGO_PKG_VERSION") {
-        let here = env!("CARGO_PKG_VERSION");
-        let reason = format!("its findings are of reeldown {made_by}, and this is {here}");
-        let help = "run its study again with this version: the report says how";
-        return Err(Error::file(&json, "compare", reason, help));
-    }
+    let findings = Findings::read(&bytes).map_err(|why| match why {
+        Unreadable::NotJson(why) => {
+            Error::file(&json, "read", format!("it is not JSON: {why}"), HELP)
+        }
+        Unreadable::NotFindings(why) => {
+            Error::file(&json, "read", format!("it is not what a run has found: {why}"), HELP)
+        }
+        Unreadable::OtherVersion(made_by) => {
+            let here = env!("CARGO_PKG_VERSION");
+            let reason = format!("its findings are of reeldown {made_by}, and this is {here}");
+            let help = "run its study again with this version: the report says how";
+            Error::file(&json, "compare", reason, help)
+        }
+    })?;
     let reader = OutcomesReader::open(&table)?;
     let entry = |key: &str| reader.parentage().0.get(key).map(String::as_str);
-    if entry("study_digest") != findings["reproduction"]["study_digest"].as_str()
-        || Some(reader.rows()) != findings["method"]["samples"].as_u64()
+    if entry("study_digest") != Some(&findings.reproduction.study_digest)
+        || reader.rows() != findings.method.samples
     {
         let reason = "findings.json and outcomes.parquet are of different runs".to_owned();
         let help = "finish the run: reeldown run --resume";

@@ -1,7 +1,7 @@
 //! `reeldown paper`: the paper's figures and statements, held against a design.
 
 use super::arguments::PaperArguments;
-use super::command_line::quoted;
+use super::command_line::CommandLine;
 use super::figure_files::write_report_figures;
 use super::{Ending, done};
 use crate::error::{Error, Result};
@@ -90,9 +90,6 @@ fn design(study: &Study) -> String {
 
 /// The command that writes the same page.
 fn command(arguments: &PaperArguments) -> String {
-    let mut words = vec!["reeldown".to_owned(), "paper".to_owned()];
-    words.extend(arguments.study.study.iter().map(|study| quoted(&study.display().to_string())));
-    words.extend(arguments.study.set.iter().map(|set| format!("--set {}", quoted(set))));
-    words.push("--out DIR".to_owned());
-    words.join(" ")
+    let study = &arguments.study;
+    CommandLine::new("paper", study).set(study).flag("--out DIR", true).line()
 }

@@ -7,11 +7,12 @@ use super::output::{say, say_error, say_notes, stdout_style};
 use super::plan_file::Plan;
 use super::sensitivity_table::{SENSITIVITY, write_sensitivity};
 use super::trade_tables::{TRADE, write_trade};
-use super::watch::{Watch, stop_on_interrupt};
+use super::watch::{carry_out, interruptible};
 use super::{Ending, parentage, replay, shards};
-use crate::campaign::{self, Looks, Progress, ROW_GROUP, Record, RowGroups};
+use crate::analysis::{self, Findings, Options, Sampling};
+use crate::campaign::{self, Progress};
 use crate::error::{Error, Result};
-use crate::findings::{self, Evidence, Findings, VerdictWord};
+use crate::findings::VerdictWord;
 use crate::outcomes::OutcomeTable;
 use crate::render;
 use crate::store::{
@@ -19,8 +20,8 @@ use crate::store::{
 };
 use crate::streams::{Purpose, open_uniform, stream};
 use crate::study::Study;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 /// The table of samples.
@@ -99,9 +100,10 @@ fn into_directory(output: &RunOutput, asked: Asked<'_>) -> Result<Ending> {
     };
     let directory = ResultDirectory::open(&directory, contents)?;
     say_notes(study);
-    campaign::with_threads(output.threads.asked(), || {
-        Run { output, study, directory, parentage: parentage::of(study), asked }.carry_out()
-    })?
+    let progress = interruptible()?;
+    carry_out(&progress, output.threads.asked(), |progress| {
+        Run { output, study, directory, parentage: parentage::of(study), asked }.carry_out(progress)
+    })
 }
 
 struct Run<'a> {
@@ -113,82 +115,18 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn carry_out(self) -> Result<Ending> {
+    fn carry_out(self, progress: &Progress) -> Result<Ending> {
         let begun = Instant::now();
-        let progress = Arc::new(Progress::default());
-        stop_on_interrupt(&progress)?;
-        let (record, looks, computed) = self.sample(&progress)?;
+        let sampling = self.sample(progress)?;
         let sampled = begun.elapsed();
-        let samples = looks.taken();
-        if !looks.over() {
-            return Ok(self.interrupted(samples, false));
-        }
-        let pick_freeze = {
-            let _watch = Watch::start(&progress, self.sensitivity_descents(), "sensitivity");
-            match campaign::run_pick_freeze(self.study, &progress) {
-                Ok(Some(design)) => Ok(design),
-                Ok(None) if progress.stopping() => return Ok(self.interrupted(samples, true)),
-                Ok(None) => Err(NO_SENSITIVITY.to_owned()),
-                Err(reason) => Err(reason.to_string()),
-            }
+        let command = Some(self.asked.command.clone());
+        let options = Options { command, ..Options::default() };
+        let Some(findings) = analysis::analyse(self.study, &sampling, &options, progress)? else {
+            return Ok(self.interrupted(&sampling));
         };
-        let rare = campaign::rare_events(self.study, &record, &progress)?;
-        if progress.stopping() {
-            return Ok(self.interrupted(samples, true));
-        }
-        let (given, screening, shapley, trade, known, epistemic, exact) = {
-            let descents = campaign::shapley::shapley_descents(self.study)
-                + campaign::given_sample::given_descents(self.study)
-                + campaign::screening::screening_descents(self.study)
-                + campaign::trade::trade_descents(self.study)
-                + campaign::known::known_descents(self.study)
-                + campaign::epistemic::epistemic_descents(self.study)
-                + campaign::exact::exact_descents(self.study);
-            let _watch = Watch::start(&progress, descents, "trade of tolerances");
-            (
-                campaign::given_sample::run_given(self.study, &record, &progress),
-                campaign::screening::run_screening(self.study, &progress),
-                campaign::shapley::run_shapley(self.study, &progress),
-                campaign::trade::run_trade(self.study, &record, &progress),
-                campaign::known::run_known(self.study, &progress),
-                campaign::epistemic::run_epistemic(self.study, &progress),
-                campaign::exact::run_exact(self.study, &progress),
-            )
-        };
-        if progress.stopping() {
-            return Ok(self.interrupted(samples, true));
-        }
-        let calibrated = campaign::calibrated::run_calibrated(self.study, &record, &progress)?;
-        if progress.stopping() {
-            return Ok(self.interrupted(samples, true));
-        }
-        let model_form = campaign::model_form::run_model_form(self.study, &progress)?;
-        if progress.stopping() {
-            return Ok(self.interrupted(samples, true));
-        }
-        let findings = findings::gather(&Evidence {
-            study: self.study,
-            record: &record,
-            stop: looks.stop()?,
-            rare,
-            nominal: campaign::nominal(self.study),
-            verification: campaign::verify(self.study, &record)?,
-            pick_freeze,
-            shapley: or_reason(shapley, NO_SENSITIVITY),
-            given: or_reason(given, NO_SENSITIVITY),
-            screening: or_reason(screening, NO_SENSITIVITY),
-            slopes: campaign::screening::slopes(self.study),
-            trade: or_reason(trade, NO_TRADE),
-            known: or_reason(known, NO_TRADE),
-            calibrated,
-            epistemic: or_reason(epistemic, NO_EPISTEMIC),
-            model_form: model_form.ok_or_else(|| "the study states no limit".to_owned()),
-            exact: or_reason(exact, "the study has no limit"),
-            command: self.asked.command.clone(),
-        })?;
         self.write(&findings)?;
         let times = (begun.elapsed().as_secs_f64(), sampled.as_secs_f64());
-        self.write_provenance(times, progress.done(), (computed, samples - computed))?;
+        self.write_provenance(times, progress.done(), &sampling)?;
         let Run { output, directory, .. } = self;
         let path = directory.path().join(REPORT);
         directory.finish()?;
@@ -196,11 +134,10 @@ impl Run<'_> {
     }
 
     /// Computes the samples that are not there yet and writes all of them.
-    fn sample(&self, progress: &Arc<Progress>) -> Result<(Record, Looks, u64)> {
+    fn sample(&self, progress: &Progress) -> Result<Sampling> {
         let path = self.directory.path().join(OUTCOMES);
         let most = self.study.sampling.samples;
-        let sampler = campaign::sampler(self.study)?;
-        let mut looks = Looks::new(self.study)?;
+        campaign::sampler(self.study)?;
         self.take_up(&path)?;
         let resumed = match self.asked.source {
             Source::Resumed => self.earlier(&path)?,
@@ -209,43 +146,35 @@ impl Run<'_> {
         if let Some(reader) = resumed.as_ref().filter(|reader| reader.rows() > most) {
             return Err(too_many(&path, reader.rows(), most));
         }
-        let mut rows = Rows {
-            record: Record::new(self.study, sampler.replicates())?,
-            writer: OutcomesWriter::create(&path, self.study, &self.parentage)?,
-            groups: RowGroups::default(),
-        };
         let before = match &self.asked.source {
             Source::Shards(shards) => &shards[..],
             _ => resumed.as_slice(),
         };
-        for reader in before {
-            let end = reader.first() + reader.rows();
-            while looks.taken() < end && !looks.over() && !progress.stopping() {
-                let start = looks.taken();
-                // No table goes beyond a row group's end, nor beyond a look.
-                let group = (start / ROW_GROUP + 1) * ROW_GROUP;
-                let count = end.min(group).min(looks.next()) - start;
-                let table = reader.read(self.study, start, count as usize)?;
-                self.verify(reader.path(), &table)?;
-                looks.take(&table)?;
-                rows.push(table)?;
-            }
-        }
+        let mut writer = OutcomesWriter::create(&path, self.study, &self.parentage)?;
+        let mut source = |wanted: Range<u64>| self.read(before, wanted);
+        let mut sink = |group: &[OutcomeTable]| writer.write(group);
+        let sampling = analysis::sample(self.study, &mut source, &mut sink, progress)?;
         if let Some(reader) = resumed.filter(|_| !progress.stopping()) {
             // A run with another rule has more rows than this study takes: none of them is thrown away.
-            if looks.taken() < reader.rows() {
-                return Err(too_many(&path, reader.rows(), looks.taken()));
+            if sampling.read < reader.rows() {
+                return Err(too_many(&path, reader.rows(), sampling.read));
             }
         }
-        let read = looks.taken();
-        {
-            let _watch = Watch::start(progress, most - read, "descents");
-            let mut sink = |table: OutcomeTable| rows.push(table);
-            campaign::run_until(self.study, &mut looks, progress, &mut sink)?;
-        }
-        let computed = looks.taken() - read;
         self.directory.table(OUTCOMES)?;
-        Ok((rows.finish()?, looks, computed))
+        writer.finish()?;
+        Ok(sampling)
+    }
+
+    /// The first of the wanted samples that tables hold, if one does.
+    fn read(&self, before: &[OutcomesReader], wanted: Range<u64>) -> Result<Option<OutcomeTable>> {
+        let end = |reader: &OutcomesReader| reader.first() + reader.rows();
+        let Some(reader) = before.iter().find(|reader| wanted.start < end(reader)) else {
+            return Ok(None);
+        };
+        let count = end(reader).min(wanted.end) - wanted.start;
+        let table = reader.read(self.study, wanted.start, count as usize)?;
+        self.verify(reader.path(), &table)?;
+        Ok(Some(table))
     }
 
     /// Computes the last sample of a table that was read once more, and some others, and refuses a file that differs.
@@ -321,10 +250,10 @@ impl Run<'_> {
         Ok(Some(reader))
     }
 
-    fn interrupted(&self, computed: u64, all: bool) -> Ending {
-        let plan = &self.study.sampling;
+    fn interrupted(&self, sampling: &Sampling) -> Ending {
+        let (plan, computed) = (&self.study.sampling, sampling.samples);
         let most = if plan.stopping.is_some() { "at most " } else { "" };
-        let when = if all {
+        let when = if sampling.complete {
             format!("stopped after all {computed} samples, before the report")
         } else {
             format!("stopped after {computed} of {most}{} samples", plan.samples)
@@ -340,12 +269,6 @@ impl Run<'_> {
         Ending::Interrupted
     }
 
-    fn sensitivity_descents(&self) -> u64 {
-        let factors = campaign::factors(self.study).len() as u64;
-        let pairs = self.study.sensitivity.pairs.len() as u64;
-        self.study.sensitivity.base_samples * (2 + factors + pairs)
-    }
-
     fn write(&self, findings: &Findings) -> Result<()> {
         let directory = &self.directory;
         directory.write_text(FINDINGS, &render::json(findings)?)?;
@@ -358,8 +281,12 @@ impl Run<'_> {
     }
 
     /// What may differ between two runs of the same study: kept out of everything else.
-    fn write_provenance(&self, times: (f64, f64), descents: u64, rows: (u64, u64)) -> Result<()> {
-        let ((seconds, sampling), (computed, read)) = (times, rows);
+    fn write_provenance(
+        &self,
+        (seconds, sampling_seconds): (f64, f64),
+        descents: u64,
+        sampling: &Sampling,
+    ) -> Result<()> {
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |t| t.as_secs());
         let provenance = serde_json::json!({
             "version": env!("CARGO_PKG_VERSION"),
@@ -370,10 +297,10 @@ impl Run<'_> {
             "operating_system": std::env::consts::OS,
             "threads": self.output.threads.asked().unwrap_or_else(campaign::threads),
             "wall_time_s": seconds,
-            "sampling_time_s": sampling,
+            "sampling_time_s": sampling_seconds,
             "descents_computed": descents,
-            "samples_computed": computed,
-            "samples_read_again": read,
+            "samples_computed": sampling.samples - sampling.read,
+            "samples_read_again": sampling.read,
             "study_digest": self.study.digest(),
         });
         self.directory.write_varying(PROVENANCE, &format!("{provenance:#}\n"))
@@ -403,50 +330,4 @@ fn too_many(path: &Path, rows: u64, wanted: u64) -> Error {
          directory with --out, or run without --resume to replace it"
     );
     Error::file(path, "resume", reason, help)
-}
-
-/// Where the samples of a run go, row group by row group.
-struct Rows {
-    record: Record,
-    writer: OutcomesWriter,
-    groups: RowGroups,
-}
-
-impl Rows {
-    fn push(&mut self, table: OutcomeTable) -> Result<()> {
-        match self.groups.push(table) {
-            Some(group) => self.keep(&group),
-            None => Ok(()),
-        }
-    }
-
-    fn keep(&mut self, group: &[OutcomeTable]) -> Result<()> {
-        group.iter().for_each(|table| self.record.absorb(table));
-        self.writer.write(group)
-    }
-
-    fn finish(mut self) -> Result<Record> {
-        let rest = self.groups.rest();
-        if !rest.is_empty() {
-            self.keep(&rest)?;
-        }
-        self.writer.finish()?;
-        Ok(self.record)
-    }
-}
-
-/// Why there are no indices where a study has none.
-const NO_SENSITIVITY: &str = "the study asks for none (sensitivity.base_samples = 0)";
-/// Why there is no trade of tolerances where a study has none.
-const NO_TRADE: &str = "the study asks for none (trade.samples = 0) or states no limit";
-
-/// Why what is not known is not told apart where a study asks for none.
-const NO_EPISTEMIC: &str = "the study asks for none (epistemic.outer = 0) or states no limit";
-
-/// What was computed, or why it was not.
-fn or_reason<T>(found: Result<Option<T>>, none: &str) -> std::result::Result<T, String> {
-    match found {
-        Ok(found) => found.ok_or_else(|| none.to_owned()),
-        Err(reason) => Err(reason.to_string()),
-    }
 }

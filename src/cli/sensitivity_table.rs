@@ -1,7 +1,7 @@
 //! Every measure of sensitivity as one long Parquet table.
 
+use crate::analysis::Findings;
 use crate::error::Result;
-use crate::findings::Findings;
 use crate::numerics::interval::Estimate;
 use crate::store::{Field, Parentage, write_table};
 use std::path::Path;
@@ -14,10 +14,10 @@ const PICK_FREEZE: &str = "pick-freeze design";
 const WALKS: &str = "walks of a design of their own";
 
 /// One row of the table.
-struct Row<'f> {
+struct Row {
     method: &'static str,
     index: &'static str,
-    output: &'f str,
+    output: String,
     factor: String,
     inputs: usize,
     samples: usize,
@@ -40,14 +40,12 @@ pub(super) fn write_sensitivity(
     rows.extend(shares(findings));
     rows.extend(measured(findings));
     rows.extend(derivatives(findings));
-    let text =
-        |read: &dyn Fn(&Row<'_>) -> Option<String>| Field::Text(rows.iter().map(read).collect());
+    let text = |read: &dyn Fn(&Row) -> Option<String>| Field::Text(rows.iter().map(read).collect());
     let number =
-        |read: &dyn Fn(&Row<'_>) -> Option<f64>| Field::Number(rows.iter().map(read).collect());
-    let count = |read: &dyn Fn(&Row<'_>) -> usize| {
-        Field::Count(rows.iter().map(|r| read(r) as u64).collect())
-    };
-    let why_none = |row: &Row<'_>| {
+        |read: &dyn Fn(&Row) -> Option<f64>| Field::Number(rows.iter().map(read).collect());
+    let count =
+        |read: &dyn Fn(&Row) -> usize| Field::Count(rows.iter().map(|r| read(r) as u64).collect());
+    let why_none = |row: &Row| {
         let why = row.estimate.interval.why_none().map(|why| format!("no interval: {why}"));
         let said = [why, row.note.clone()].into_iter().flatten().collect::<Vec<_>>().join("; ");
         (!said.is_empty()).then_some(said)
@@ -55,7 +53,7 @@ pub(super) fn write_sensitivity(
     let columns = vec![
         ("method".to_owned(), text(&|row| Some(row.method.to_owned()))),
         ("index".to_owned(), text(&|row| Some(row.index.to_owned()))),
-        ("output".to_owned(), text(&|row| Some(row.output.to_owned()))),
+        ("output".to_owned(), text(&|row| Some(row.output.clone()))),
         ("factor".to_owned(), text(&|row| Some(row.factor.clone()))),
         ("inputs".to_owned(), count(&|row| row.inputs)),
         ("samples".to_owned(), count(&|row| row.samples)),
@@ -70,7 +68,7 @@ pub(super) fn write_sensitivity(
     write_table(path, columns, parentage.entries())
 }
 
-fn pick_freeze(findings: &Findings) -> Vec<Row<'_>> {
+fn pick_freeze(findings: &Findings) -> Vec<Row> {
     let drivers = &findings.drivers;
     let mut rows = Vec::new();
     for output in &drivers.outputs {
@@ -78,7 +76,7 @@ fn pick_freeze(findings: &Findings) -> Vec<Row<'_>> {
             |index, factor: String, inputs, estimate: &Estimate, note: &Option<String>, left| Row {
                 method: PICK_FREEZE,
                 index,
-                output: &output.name,
+                output: output.name.to_string(),
                 factor,
                 inputs,
                 samples: drivers.base_samples,
@@ -92,7 +90,7 @@ fn pick_freeze(findings: &Findings) -> Vec<Row<'_>> {
             for (index, estimate) in [("first", &found.first), ("total", &found.total)] {
                 let beyond = estimate.value.is_some_and(|value| !(0.0..=1.0).contains(&value));
                 let note = found.explanation.clone().filter(|_| beyond);
-                let name = factor.name.clone();
+                let name = factor.name.to_string();
                 rows.push(row(index, name, factor.inputs, estimate, &note, found.rows_left_out));
             }
         }
@@ -117,18 +115,17 @@ fn pick_freeze(findings: &Findings) -> Vec<Row<'_>> {
     rows
 }
 
-fn shares(findings: &Findings) -> impl Iterator<Item = Row<'_>> {
+fn shares(findings: &Findings) -> impl Iterator<Item = Row> {
     let shapley = &findings.shapley;
     let inputs = |name: &str| {
-        let of = |known: &str| known.trim_end_matches(" (all)") == name;
-        let known = findings.measures.factors.iter().find(|factor| of(&factor.name));
+        let known = findings.measures.factors.iter().find(|factor| factor.name.name == name);
         known.map_or(1, |factor| factor.inputs)
     };
     shapley.outputs.iter().flat_map(move |output| {
         output.effects.iter().map(move |(factor, effect)| Row {
             method: WALKS,
             index: "shapley",
-            output: &output.name,
+            output: output.name.to_string(),
             factor: factor.clone(),
             inputs: inputs(factor),
             samples: shapley.walks,
@@ -140,7 +137,7 @@ fn shares(findings: &Findings) -> impl Iterator<Item = Row<'_>> {
     })
 }
 
-fn measured(findings: &Findings) -> impl Iterator<Item = Row<'_>> {
+fn measured(findings: &Findings) -> impl Iterator<Item = Row> {
     let measures = &findings.measures;
     measures.outputs.iter().flat_map(move |output| {
         output.indices.iter().flat_map(move |column| {
@@ -148,8 +145,8 @@ fn measured(findings: &Findings) -> impl Iterator<Item = Row<'_>> {
                 move |(k, (factor, estimate))| Row {
                     method: column.method,
                     index: column.index,
-                    output: &output.name,
-                    factor: factor.name.clone(),
+                    output: output.name.to_string(),
+                    factor: factor.name.to_string(),
                     inputs: factor.inputs,
                     samples: column.samples,
                     estimate: estimate.clone(),
@@ -162,7 +159,7 @@ fn measured(findings: &Findings) -> impl Iterator<Item = Row<'_>> {
     })
 }
 
-fn derivatives(findings: &Findings) -> Vec<Row<'_>> {
+fn derivatives(findings: &Findings) -> Vec<Row> {
     let local = &findings.measures.local;
     let mut rows = Vec::new();
     for outcome in &local.outcomes {
@@ -175,7 +172,7 @@ fn derivatives(findings: &Findings) -> Vec<Row<'_>> {
                 rows.push(Row {
                     method: "gradient kernel, SI per SI",
                     index,
-                    output: outcome.name,
+                    output: outcome.name.to_owned(),
                     factor: target.path.clone(),
                     inputs: target.inputs,
                     samples: 0,

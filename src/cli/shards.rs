@@ -5,15 +5,14 @@ use super::arguments::{MissingArguments, PlanArguments, ShardArguments};
 use super::command_line::{quoted, run_of};
 use super::output::{say, say_error, say_notes, stderr_style};
 use super::plan_file::{Plan, Shard, compact};
-use super::watch::{Watch, stop_on_interrupt, stop_on_termination};
+use super::watch::{carry_out, interruptible, stop_on_termination};
 use super::{diagnostics, done, engines};
-use crate::campaign::{self, Progress, RowGroups};
+use crate::campaign::{self, RowGroups};
 use crate::error::{Error, Result};
 use crate::outcomes::OutcomeTable;
 use crate::store::OutcomesWriter;
 use crate::study::Study;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// The plan's file.
 const PLAN: &str = "plan.json";
@@ -87,21 +86,20 @@ pub(super) fn shard(arguments: &ShardArguments) -> Result<Ending> {
     if let Shard::Done(_) = plan.shard(&arguments.plan, k) {
         return done(&format!("{}: already done", path.display()));
     }
-    let progress = Arc::new(Progress::default());
-    stop_on_interrupt(&progress)?;
+    let progress = interruptible()?;
     stop_on_termination(&progress)?;
     let range = plan.range(k);
     let threads = arguments.threads.asked().or_else(cores);
-    let computed = campaign::with_threads(threads, || {
-        let _watch = Watch::start(&progress, range.end - range.start, "descents");
+    let computed = carry_out(&progress, threads, |progress| {
+        progress.begin("descents", range.end - range.start);
         let writer = OutcomesWriter::create_whole(&path, &study, &plan.shard_parentage(k))?;
         let mut rows = Rows { writer, groups: RowGroups::default() };
-        let end = campaign::run(&study, range.clone(), &progress, &mut |table| rows.push(table))?;
+        let end = campaign::run(&study, range.clone(), progress, &mut |table| rows.push(table))?;
         if end < range.end {
             return Ok(None);
         }
         rows.finish().map(Some)
-    })??;
+    })?;
     if computed.is_none() {
         say_error(&format!("stopped; nothing was left of shard {k}"));
         return Ok(Ending::Terminated);

@@ -1,20 +1,18 @@
 //! `reeldown sweep`: the design space along one or two paths.
 
 use super::arguments::SweepArguments;
-use super::command_line::quoted;
+use super::command_line::CommandLine;
 use super::figure_files::write_report_figures;
 use super::output::{say, say_error, say_notes};
-use super::watch::{Watch, stop_on_interrupt};
+use super::watch::{carry_out, interruptible};
 use super::{Ending, done, parentage};
 use crate::campaign::sweep::{Grid, Meaning, SweptPath, check, run_sweep, usual_samples};
-use crate::campaign::{self, Progress};
 use crate::error::{Error, Result};
 use crate::findings::sweep::{SweepFinding, sweep as findings};
 use crate::render::{self, Mark};
 use crate::store::{Contents, Field, ResultDirectory, write_table};
 use crate::study::{Over, Study, design_path, option_error};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// The long table.
 const TABLE: &str = "sweep.parquet";
@@ -47,18 +45,14 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Ending> {
     };
     let directory = ResultDirectory::open(&directory, contents)?;
     say_notes(&study);
-    let progress = Arc::new(Progress::default());
-    stop_on_interrupt(&progress)?;
-    let finding = campaign::with_threads(arguments.threads.asked(), || {
-        let descents = samples.unwrap_or(0) * grid.cells().len() as u64;
-        let watch = Watch::start(&progress, descents, "sweeping");
-        let cells = run_sweep(&study, &grid, samples, &progress)?;
-        drop(watch);
-        match cells {
-            Some(cells) => findings(&study, &grid, &cells, samples, command(arguments), &progress),
+    let progress = interruptible()?;
+    let finding = carry_out(&progress, arguments.threads.asked(), |progress| {
+        progress.begin("sweeping", samples.unwrap_or(0) * grid.cells().len() as u64);
+        match run_sweep(&study, &grid, samples, progress)? {
+            Some(cells) => findings(&study, &grid, &cells, samples, command(arguments), progress),
             None => Ok(None),
         }
-    })??;
+    })?;
     let Some(finding) = finding else {
         say_error("stopped before the sweep was complete; nothing was written");
         return Ok(Ending::Interrupted);
@@ -148,23 +142,10 @@ fn samples(arguments: &SweepArguments, study: &Study, grid: &Grid) -> Result<Opt
 
 /// The command that gives the same numbers.
 fn command(arguments: &SweepArguments) -> String {
-    let mut words = vec!["reeldown".to_owned(), "sweep".to_owned()];
-    if let Some(study) = &arguments.study.study {
-        words.push(quoted(&study.display().to_string()));
-    }
-    let mut option = |name: &str, values: &[String]| {
-        words.extend(values.iter().map(|value| format!("{name} {}", quoted(value))));
-    };
-    option("--over", &arguments.over);
-    option("--hold", &arguments.hold);
-    option("--centre", &arguments.centre);
-    option("--samples", arguments.samples.as_slice());
-    option("--seed", arguments.seed.as_slice());
-    option("--set", &arguments.study.set);
-    if arguments.nominal {
-        words.push("--nominal".to_owned());
-    }
-    words.join(" ")
+    let SweepArguments { study, over, hold, centre, samples, seed, nominal, .. } = arguments;
+    let command = CommandLine::new("sweep", study).option("--over", over).option("--hold", hold);
+    let command = command.option("--centre", centre).option("--samples", samples);
+    command.option("--seed", seed).set(study).flag("--nominal", *nominal).line()
 }
 
 fn write(

@@ -1,17 +1,16 @@
 //! `reeldown tighten`: which tolerances to buy.
 
 use super::arguments::TightenArguments;
-use super::command_line::quoted;
+use super::command_line::CommandLine;
 use super::output::{say, say_error, say_notes};
-use super::watch::{Watch, stop_on_interrupt};
+use super::watch::{carry_out, interruptible};
 use super::{Ending, done};
-use crate::campaign::{self, Progress};
+use crate::campaign;
 use crate::error::{Error, Result};
 use crate::findings::known::GoAnswer;
 use crate::findings::tighten::{TightenFinding, tighten as findings};
 use crate::render::{self, Mark};
 use crate::store::{Contents, ResultDirectory};
-use std::sync::Arc;
 
 /// The findings as one tree.
 const FINDINGS: &str = "tighten.json";
@@ -37,13 +36,11 @@ pub(super) fn tighten(arguments: &TightenArguments) -> Result<Ending> {
     let directory = arguments.out.as_ref().map(|path| ResultDirectory::open(path, contents));
     let directory = directory.transpose()?;
     say_notes(&study);
-    let progress = Arc::new(Progress::default());
-    stop_on_interrupt(&progress)?;
-    let found = campaign::with_threads(arguments.threads.asked(), || {
-        let about = EVALUATIONS * study.tighten.samples;
-        let _watch = Watch::start(&progress, about, "searching");
-        campaign::tighten::tighten(&study, None, &progress)
-    })??;
+    let progress = interruptible()?;
+    let found = carry_out(&progress, arguments.threads.asked(), |progress| {
+        progress.begin("searching", EVALUATIONS * study.tighten.samples);
+        campaign::tighten::tighten(&study, None, progress)
+    })?;
     let Some(found) = found else {
         say_error("stopped before a plan was found");
         return Ok(Ending::Interrupted);
@@ -113,12 +110,7 @@ fn ending(finding: &TightenFinding) -> Ending {
 
 /// The command that gives the same numbers.
 fn command(arguments: &TightenArguments) -> String {
-    let mut words = vec!["reeldown".to_owned(), "tighten".to_owned()];
-    if let Some(study) = &arguments.study.study {
-        words.push(quoted(&study.display().to_string()));
-    }
-    words.extend(arguments.target.iter().map(|target| format!("--target {}", quoted(target))));
-    words.extend(arguments.moves.iter().map(|range| format!("--move {}", quoted(range))));
-    words.extend(arguments.study.set.iter().map(|set| format!("--set {}", quoted(set))));
-    words.join(" ")
+    let TightenArguments { study, target, moves, .. } = arguments;
+    let command = CommandLine::new("tighten", study).option("--target", target);
+    command.option("--move", moves).set(study).line()
 }

@@ -1,7 +1,7 @@
 //! The trade of tolerances, the Shapley effects and the go/no-go charts as Parquet tables.
 
+use crate::analysis::Findings;
 use crate::error::Result;
-use crate::findings::Findings;
 use crate::numerics::interval::Estimate;
 use crate::store::{Field, Parentage, write_table};
 use std::path::Path;
@@ -63,7 +63,7 @@ pub(super) fn write_trade(path: &Path, findings: &Findings, parentage: &Parentag
         rows.extend(output.effects.iter().map(|(factor, effect)| Row {
             kind: "shapley",
             name: factor,
-            parameter: output.name.clone(),
+            parameter: output.name.to_string(),
             setting: None,
             value: effect,
             difference: None,

@@ -1,6 +1,6 @@
-//! Watching a campaign: a progress bar on a terminal, and Ctrl-C.
+//! Work that somebody waits for: on so many threads, with a progress bar on a terminal, stopped by Ctrl-C.
 
-use crate::campaign::Progress;
+use crate::campaign::{self, Progress};
 use crate::error::{Error, Result};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
@@ -14,21 +14,50 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// How often the bar moves.
 const TICK: Duration = Duration::from_millis(100);
 
+/// Progress that Ctrl-C asks to stop at the next batch; a second Ctrl-C ends the program at once.
+///
+/// # Errors
+/// If the signal cannot be caught.
+pub(super) fn interruptible() -> Result<Arc<Progress>> {
+    let progress = Arc::new(Progress::default());
+    let stopped = Arc::clone(&progress);
+    ctrlc::set_handler(move || {
+        if stopped.stopping() {
+            std::process::exit(130);
+        }
+        stopped.request_stop();
+    })
+    .map_err(|reason| Error::argument(format!("cannot catch Ctrl-C: {reason}")))?;
+    Ok(progress)
+}
+
+/// Carries out work on so many threads, one a core unless stated, and shows how far it is.
+///
+/// # Errors
+/// If the threads cannot be started, and those of the work.
+pub(super) fn carry_out<'a, T: Send>(
+    progress: &'a Arc<Progress>,
+    threads: Option<usize>,
+    work: impl FnOnce(&'a Progress) -> Result<T> + Send,
+) -> Result<T> {
+    let _watch = Watch::start(progress);
+    campaign::with_threads(threads, || work(progress))?
+}
+
 /// A progress bar over a campaign, on standard error if that is a terminal.
-pub(super) struct Watch {
+struct Watch {
     over: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Watch {
-    /// Watches `progress` on its way to `total` descents; those done already do not count.
-    pub fn start(progress: &Arc<Progress>, total: u64, what: &'static str) -> Self {
+    /// Watches `progress` from stage to stage.
+    fn start(progress: &Arc<Progress>) -> Self {
         let over = Arc::new(AtomicBool::new(false));
         if !std::io::stderr().is_terminal() {
             return Watch { over, thread: None };
         }
         let (progress, finished) = (Arc::clone(progress), Arc::clone(&over));
-        let before = progress.done();
         let thread = thread::spawn(move || {
             let begun = Instant::now();
             while begun.elapsed() < PATIENCE {
@@ -37,14 +66,21 @@ impl Watch {
                 }
                 thread::sleep(TICK);
             }
-            let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
+            let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
             let layout = "{msg} {bar:30} {human_pos}/{human_len}  {per_sec}  {eta} left";
             if let Ok(style) = ProgressStyle::with_template(layout) {
                 bar.set_style(style);
             }
-            bar.set_message(what);
+            let mut shown = None;
             while !finished.load(Ordering::Relaxed) {
-                bar.set_position(progress.done() - before);
+                let stage = progress.stage();
+                if shown != Some(stage) {
+                    bar.set_message(stage.name);
+                    bar.set_length(stage.descents);
+                    bar.reset();
+                    shown = Some(stage);
+                }
+                bar.set_position(progress.done() - stage.before);
                 thread::sleep(TICK);
             }
             bar.finish_and_clear();
@@ -61,21 +97,6 @@ impl Drop for Watch {
             let _ = thread.join();
         }
     }
-}
-
-/// Makes Ctrl-C stop `progress` at the next batch; a second one ends the program at once.
-///
-/// # Errors
-/// If the signal cannot be caught.
-pub(super) fn stop_on_interrupt(progress: &Arc<Progress>) -> Result<()> {
-    let progress = Arc::clone(progress);
-    ctrlc::set_handler(move || {
-        if progress.stopping() {
-            std::process::exit(130);
-        }
-        progress.request_stop();
-    })
-    .map_err(|reason| Error::argument(format!("cannot catch Ctrl-C: {reason}")))
 }
 
 /// Makes the request to end by which queues and clusters take a machine back stop `progress` at the next batch.

@@ -9,10 +9,10 @@ use crate::campaign::common_numbers::Event;
 use crate::error::Result;
 use crate::numerics::interval::Estimate;
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What a calibration changed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CalibratedFinding {
     /// What the calibrated card says that it was made from.
     pub calibrated_from: String,
@@ -27,7 +27,7 @@ pub struct CalibratedFinding {
 }
 
 /// The probability of an event before and after.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CalibratedEvent {
     /// The event in words.
     pub title: String,
@@ -42,7 +42,7 @@ pub struct CalibratedEvent {
 }
 
 /// One input before and after.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MovedInput {
     /// Its path.
     pub path: String,
@@ -59,7 +59,7 @@ pub struct MovedInput {
 }
 
 /// What a calibration changed; nothing for a study without a calibrated card.
-pub(super) fn calibrated(
+pub(crate) fn calibrated(
     study: &Study,
     outcomes: Option<&CalibratedOutcomes>,
     after: &EpistemicFinding,

@@ -6,17 +6,18 @@ use super::sequence;
 use crate::campaign::Record;
 use crate::error::Result;
 use crate::numerics::interval::{Earned, Estimate};
+use crate::numerics::words::{self, Word};
 use crate::reliability::demonstration::{Demonstration, Requirement, Verdict, minimum_samples};
 use crate::reliability::probability::Proportion;
 use crate::reliability::replicates::from_replicate_counts;
 use crate::study::{RequirementOf, StoppingPlan, Study};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How many rows the failures-allowed table has: 0 to 3 failures.
 const TABLE_ROWS: u64 = 4;
 
 /// The verdict in one word.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum VerdictWord {
     /// Demonstrated at the stated confidence.
@@ -29,8 +30,20 @@ pub enum VerdictWord {
     NoRequirement,
 }
 
+impl VerdictWord {
+    /// The verdict in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            VerdictWord::Met => "met",
+            VerdictWord::NotMet => "not met",
+            VerdictWord::Undecided => "undecided",
+            VerdictWord::NoRequirement => "no requirement",
+        }
+    }
+}
+
 /// What the verdict rests on.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Decision {
     /// Exact binomial bounds on independent samples.
@@ -58,14 +71,15 @@ pub enum Decision {
 }
 
 /// The verdict and its evidence.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct VerdictFinding {
     /// The word.
     pub word: VerdictWord,
     /// The verdict as a sentence or two.
     pub statement: String,
     /// What the verdict is of: `average` over all possible brakes, or this `brake`.
-    pub of: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub of: Word,
     /// Where there are epistemic inputs: what holds of the other of the two.
     pub other: Option<String>,
     /// Required reliability.
@@ -81,7 +95,7 @@ pub struct VerdictFinding {
 /// The verdict of a study's samples.
 ///
 /// Without a requirement the headline says what the table says of any breach, interval included.
-pub(super) fn verdict(
+pub(crate) fn verdict(
     study: &Study,
     record: &Record,
     probabilities: &[ProbabilityFinding],

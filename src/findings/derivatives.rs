@@ -8,20 +8,22 @@ use crate::campaign::trade::{Parameter, TradeOutcomes};
 use crate::error::Result;
 use crate::numerics::elementary::{exp, ln};
 use crate::numerics::interval::{Earned, Estimate, Interval};
+use crate::numerics::words::{self, Word};
 use crate::study::Study;
 use crate::uncertainty::Law;
 use crate::units::{Quantity, display, number};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// dP/dθ of one event with respect to one parameter of a factor.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DerivativeFinding {
     /// The event: a limit's name, or `any`.
     pub event: String,
     /// Path of the input, or name of the group.
     pub factor: String,
     /// `mean` or `spread`.
-    pub parameter: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub parameter: Word,
     /// dP/dθ by the score function, per SI unit; of a lognormal law's spread
     /// per unit of the logarithm's standard deviation. Truncation limits are held.
     pub derivative: Estimate,

@@ -10,10 +10,10 @@ use crate::numerics::elementary::ln;
 use crate::numerics::interval::{Earned, Estimate};
 use crate::reliability::jackknife::delete_a_group;
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The best value of a design variable.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DesignValueFinding {
     /// Its path.
     pub path: String,
@@ -70,7 +70,7 @@ pub(super) fn design_value(
     let best = if clean {
         Estimate::none(format!("over a part of its range none of {rows} samples breaches a limit"))
     } else {
-        best_value(&xs, &shares, (sweep.range.lower, sweep.range.upper))
+        best_value(&xs, &shares, (sweep.range.lower, sweep.range.upper)).0
     };
     // The nearest computed setting stands for P at the best value.
     let near = best.value.and_then(|value| {
@@ -100,30 +100,46 @@ pub(super) fn design_value(
     })
 }
 
+/// Why a best value has no interval.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unresolved {
+    /// It is an end of its range.
+    EndOfRange,
+    /// Nothing breaches about it.
+    NoBreach,
+    /// P has no clear minimum.
+    NoClearMinimum,
+}
+
 /// The least point of a parabola through ln P over the settings, with its error by leaving out one of
 /// [`GROUPS`] groups of rows at a time (the delete-a-group jackknife).
 pub(super) fn best_value(
     xs: &[f64],
     shares: &dyn Fn(Option<usize>) -> Vec<f64>,
     range: (f64, f64),
-) -> Estimate {
+) -> (Estimate, Option<Unresolved>) {
     let ends = (xs.first().copied().unwrap_or(0.0), xs.last().copied().unwrap_or(0.0));
     let vertex = |left_out: Option<usize>| parabola_vertex(xs, &shares(left_out));
     let Some(value) = vertex(None).filter(|x| (ends.0..=ends.1).contains(x)) else {
         let ps = shares(None);
         let best = (0..xs.len()).min_by(|&a, &b| ps[a].total_cmp(&ps[b])).map(|k| xs[k]);
-        let why = match best {
-            Some(x) if x <= range.0 || x >= range.1 => "the best value is an end of its range",
-            _ => "P has no clear minimum over the range",
+        let (unresolved, why) = match best {
+            Some(x) if x <= range.0 || x >= range.1 => {
+                (Unresolved::EndOfRange, "the best value is an end of its range")
+            }
+            _ => (Unresolved::NoClearMinimum, "P has no clear minimum over the range"),
         };
-        return Estimate { value: best, standard_error: None, interval: Earned::none(why) };
+        let interval = Earned::none(why);
+        return (Estimate { value: best, standard_error: None, interval }, Some(unresolved));
     };
     let parts: Option<Vec<f64>> = (0..GROUPS).map(|group| vertex(Some(group))).collect();
     let Some(parts) = parts else {
         let interval = Earned::none("without some of the samples P has no minimum");
-        return Estimate { value: Some(value), standard_error: None, interval };
+        let estimate = Estimate { value: Some(value), standard_error: None, interval };
+        return (estimate, Some(Unresolved::NoClearMinimum));
     };
-    delete_a_group(value, &parts, CONFIDENCE, "parabola through ln P, delete-a-group jackknife")
+    let method = "parabola through ln P, delete-a-group jackknife";
+    (delete_a_group(value, &parts, CONFIDENCE, method), None)
 }
 
 /// The vertex of the least-squares parabola through (x, ln p), each weighted by p; `None` if it opens

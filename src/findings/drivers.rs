@@ -1,18 +1,19 @@
 //! What drives the outcomes and the breaches: Sobol' indices from the pick-freeze design.
 
 use super::CONFIDENCE;
+use super::named::{FactorName, Output};
 use super::probabilities::breach_of;
-use crate::campaign::{PickFreezeOutcomes, in_parallel};
+use crate::campaign::{Found, PickFreezeOutcomes, in_parallel};
 use crate::descent::OutcomeQuantity;
 use crate::error::Result;
 use crate::sensitivity::bootstrap::Resampling;
 use crate::sensitivity::rare_events::FEWEST;
 use crate::sensitivity::sobol_indices::{FactorIndices, PairIndices, sobol_indices};
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The drivers of every outcome and every breach.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DriversFinding {
     /// Why there are none.
     pub none: Option<String>,
@@ -27,10 +28,10 @@ pub struct DriversFinding {
 }
 
 /// The drivers of one output.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DriverOutput {
-    /// The output: an outcome's name, `breach.time`, `breach.any`.
-    pub name: String,
+    /// The output.
+    pub name: Output,
     /// The output in words.
     pub title: String,
     /// Whether it is a breach indicator.
@@ -48,10 +49,10 @@ pub struct DriverOutput {
 }
 
 /// What two factors do together to one output.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PairFinding {
     /// Paths of the inputs, or names of the groups.
-    pub factors: (String, String),
+    pub factors: (FactorName, FactorName),
     /// How many inputs they are.
     pub inputs: usize,
     /// The indices.
@@ -60,10 +61,10 @@ pub struct PairFinding {
 }
 
 /// One factor's share in one output.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FactorFinding {
     /// Path of the input, or name of the group.
-    pub name: String,
+    pub name: FactorName,
     /// How many inputs it is.
     pub inputs: usize,
     /// Whether it belongs to a group that is listed as a factor of its own.
@@ -74,15 +75,15 @@ pub struct FactorFinding {
 }
 
 /// The drivers of a study, or why there are none.
-pub(super) fn drivers(
+pub(crate) fn drivers(
     study: &Study,
-    pick_freeze: &std::result::Result<PickFreezeOutcomes, String>,
+    pick_freeze: &Found<PickFreezeOutcomes>,
 ) -> Result<DriversFinding> {
     let design = match pick_freeze {
         Ok(design) => design,
         Err(why) => {
             return Ok(DriversFinding {
-                none: Some(why.clone()),
+                none: Some(why.to_string()),
                 base_samples: 0,
                 descents: 0,
                 faults: 0,
@@ -108,12 +109,12 @@ pub(super) fn drivers(
         let pairs = indices.pairs.into_iter().map(|indices| {
             let (one, other) = (&known[indices.factors.0], &known[indices.factors.1]);
             PairFinding {
-                factors: (one.name.clone(), other.name.clone()),
+                factors: (FactorName::of(study, one), FactorName::of(study, other)),
                 inputs: one.columns.len() + other.columns.len(),
                 indices,
             }
         });
-        let breach = !matches!(output, Output::Outcome(_));
+        let breach = !matches!(output, Asked::Outcome(_));
         Ok(DriverOutput {
             pairs: pairs.collect(),
             // Blocks A and B: the others repeat their values.
@@ -125,7 +126,7 @@ pub(super) fn drivers(
             variance: indices.variance,
             factors: factors
                 .map(|(factor, indices)| FactorFinding {
-                    name: factor.name.clone(),
+                    name: FactorName::of(study, factor),
                     inputs: factor.columns.len(),
                     grouped: grouped(&factor.columns),
                     indices,
@@ -160,33 +161,33 @@ pub(super) fn too_few<'v>(indicators: impl Iterator<Item = &'v f64>) -> Option<S
 
 /// Something whose drivers are asked for.
 #[derive(Debug, Clone, Copy)]
-enum Output {
+enum Asked {
     Outcome(OutcomeQuantity),
     Breach(usize),
     AnyBreach,
 }
 
-fn outputs(study: &Study) -> Vec<Output> {
-    let outcomes = OutcomeQuantity::ALL.into_iter().map(Output::Outcome);
-    let breaches = (0..study.limits.len()).map(Output::Breach);
-    let any = (!study.limits.is_empty()).then_some(Output::AnyBreach);
+fn outputs(study: &Study) -> Vec<Asked> {
+    let outcomes = OutcomeQuantity::ALL.into_iter().map(Asked::Outcome);
+    let breaches = (0..study.limits.len()).map(Asked::Breach);
+    let any = (!study.limits.is_empty()).then_some(Asked::AnyBreach);
     outcomes.chain(breaches).chain(any).collect()
 }
 
-impl Output {
-    fn name(self, study: &Study) -> String {
+impl Asked {
+    fn name(self, study: &Study) -> Output {
         match self {
-            Output::Outcome(quantity) => quantity.name().to_owned(),
-            Output::Breach(i) => format!("breach.{}", study.limits[i].name()),
-            Output::AnyBreach => "breach.any".to_owned(),
+            Asked::Outcome(quantity) => Output::Outcome(quantity),
+            Asked::Breach(i) => Output::breach_of(&study.limits[i]),
+            Asked::AnyBreach => Output::AnyBreach,
         }
     }
 
     fn title(self, study: &Study) -> String {
         match self {
-            Output::Outcome(quantity) => quantity.title().to_owned(),
-            Output::Breach(i) => breach_of(&study.limits[i]),
-            Output::AnyBreach => "breach of any limit".to_owned(),
+            Asked::Outcome(quantity) => quantity.title().to_owned(),
+            Asked::Breach(i) => breach_of(&study.limits[i]),
+            Asked::AnyBreach => "breach of any limit".to_owned(),
         }
     }
 
@@ -197,12 +198,12 @@ impl Output {
             _ => 0.0,
         };
         match self {
-            Output::Outcome(quantity) => design.map(|row| row(quantity)),
-            Output::Breach(i) => {
+            Asked::Outcome(quantity) => design.map(|row| row(quantity)),
+            Asked::Breach(i) => {
                 let limit = &study.limits[i];
                 design.map(|row| indicator(limit.margin_of(row(limit.outcome))))
             }
-            Output::AnyBreach => design.map(|row| {
+            Asked::AnyBreach => design.map(|row| {
                 let margins = study.limits.iter().map(|limit| limit.margin_of(row(limit.outcome)));
                 // A known breach decides; otherwise one unknown margin leaves the row unknown.
                 margins.map(indicator).fold(0.0, |any: f64, one| match (any, one) {

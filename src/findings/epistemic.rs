@@ -3,12 +3,13 @@
 use super::{CONFIDENCE, probabilities::title_of};
 use crate::campaign::common_numbers::Event;
 use crate::campaign::epistemic::EpistemicOutcomes;
-use crate::campaign::in_parallel;
+use crate::campaign::{Found, in_parallel};
 use crate::error::Result;
 use crate::numerics::interval::Estimate;
+use crate::numerics::words::{self, Word};
 use crate::reliability::nested::{NestedEvent, band, central, shares};
 use crate::study::{LimitKind, Study};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Shares of belief of the quantiles shown.
 pub const SHARES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
@@ -20,7 +21,7 @@ const THRESHOLDS: usize = 61;
 const TAIL: f64 = 0.002;
 
 /// What varies and what is not known.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EpistemicFinding {
     /// Why there is nothing to say.
     pub none: Option<String>,
@@ -45,7 +46,7 @@ pub struct EpistemicFinding {
 }
 
 /// What is believed of the probability of one event.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EpistemicEvent {
     /// The event: a limit's name, or `any`.
     pub event: String,
@@ -70,7 +71,7 @@ pub struct EpistemicEvent {
 }
 
 /// What one unknown carries of the variance of P(event | what is not known).
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct UnknownShare {
     /// The factor.
     pub factor: String,
@@ -83,10 +84,11 @@ pub struct UnknownShare {
 }
 
 /// The distribution functions that an outcome may have: a p-box.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ProbabilityBox {
     /// The outcome.
-    pub outcome: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub outcome: Word,
     /// Its limit, SI, and as written.
     pub limit: f64,
     /// See `limit`.
@@ -100,13 +102,13 @@ pub struct ProbabilityBox {
 }
 
 /// What varies and what is not known, or why there is nothing to say.
-pub(super) fn epistemic(
+pub(crate) fn epistemic(
     study: &Study,
-    outcomes: &std::result::Result<EpistemicOutcomes, String>,
+    outcomes: &Found<EpistemicOutcomes>,
 ) -> Result<EpistemicFinding> {
     let outcomes = match outcomes {
         Ok(outcomes) => outcomes,
-        Err(why) => return Ok(nothing(why)),
+        Err(why) => return Ok(nothing(why.to_string())),
     };
     let events: Vec<Event> =
         (0..study.limits.len()).map(Event::Limit).chain([Event::Any]).collect();
@@ -133,9 +135,9 @@ pub(super) fn epistemic(
     })
 }
 
-fn nothing(why: &str) -> EpistemicFinding {
+fn nothing(why: String) -> EpistemicFinding {
     EpistemicFinding {
-        none: Some(why.to_owned()),
+        none: Some(why),
         unknown: Vec::new(),
         varying: Vec::new(),
         sets: 0,

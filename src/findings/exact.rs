@@ -1,16 +1,18 @@
 //! What the values that are taken as exact do to P(any breach).
 
 use super::trade::Paired;
+use crate::campaign::Found;
 use crate::campaign::common_numbers::Event;
 use crate::campaign::exact::{ExactOutcomes, KELVIN, SHARE};
 use crate::error::Result;
 use crate::numerics::interval::Estimate;
+use crate::numerics::words::{self, Word};
 use crate::study::Study;
 use crate::units::Quantity;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The values that no law varies, by what they do.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ExactFinding {
     /// Why it is not known what they do.
     pub none: Option<String>,
@@ -25,12 +27,13 @@ pub struct ExactFinding {
 }
 
 /// One value that is taken as exact.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ExactValue {
     /// Dotted path.
     pub path: String,
     /// What it is.
-    pub description: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub description: Word,
     /// Value, SI.
     pub value: f64,
     /// Value as an engineer reads it.
@@ -49,15 +52,12 @@ fn size(change: &Estimate) -> f64 {
 }
 
 /// The exact values of a study.
-pub(super) fn exact(
-    study: &Study,
-    outcomes: &std::result::Result<ExactOutcomes, String>,
-) -> Result<ExactFinding> {
+pub(crate) fn exact(study: &Study, outcomes: &Found<ExactOutcomes>) -> Result<ExactFinding> {
     let outcomes = match outcomes {
         Ok(outcomes) => outcomes,
         Err(why) => {
             return Ok(ExactFinding {
-                none: Some(why.clone()),
+                none: Some(why.to_string()),
                 samples: 0,
                 values: Vec::new(),
                 strongest: None,

@@ -1,17 +1,20 @@
 //! What is uncertain, from the card.
 
+use crate::numerics::words::{self, Word};
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// One uncertain parameter; the gaps of one statement are one.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct InputFinding {
     /// Dotted path.
     pub path: String,
     /// Letter in the equations.
-    pub symbol: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub symbol: Word,
     /// What it is.
-    pub description: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub description: Word,
     /// How many inputs follow the law.
     pub inputs: usize,
     /// The law as written.
@@ -21,15 +24,17 @@ pub struct InputFinding {
     /// Standard deviation, SI.
     pub standard_deviation: f64,
     /// When its value becomes known.
-    pub known: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub known: Word,
     /// Whether it varies from flight to flight or is fixed and not known.
-    pub nature: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub nature: Word,
     /// Where the law comes from.
     pub source: String,
 }
 
 /// The uncertain parameters of a study.
-pub(super) fn inputs(study: &Study) -> Vec<InputFinding> {
+pub(crate) fn inputs(study: &Study) -> Vec<InputFinding> {
     study
         .resolved()
         .into_iter()
@@ -52,7 +57,7 @@ pub(super) fn inputs(study: &Study) -> Vec<InputFinding> {
 }
 
 /// A dependence between inputs, realised by a Gaussian copula; like ones of pairs of surfaces are one.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CorrelationFinding {
     /// Dotted paths of the two inputs.
     pub between: (String, String),
@@ -61,7 +66,8 @@ pub struct CorrelationFinding {
     /// The inputs in words.
     pub inputs: String,
     /// Which coefficient is stated: `normal`, `spearman`, `kendall`.
-    pub kind: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub kind: Word,
     /// The coefficient as stated.
     pub coefficient: f64,
     /// Correlation of the standard normal variables behind the two: the copula's.
@@ -71,7 +77,7 @@ pub struct CorrelationFinding {
 }
 
 /// The correlations of a study's inputs.
-pub(super) fn correlations(study: &Study) -> Vec<CorrelationFinding> {
+pub(crate) fn correlations(study: &Study) -> Vec<CorrelationFinding> {
     let found = study.resolved_correlations().into_iter();
     let finding = found.map(|correlation| CorrelationFinding {
         inputs: correlation.inputs(),
@@ -86,7 +92,7 @@ pub(super) fn correlations(study: &Study) -> Vec<CorrelationFinding> {
 }
 
 /// How the inputs depend on each other, after the words of a design of experiment; empty where they do not.
-pub(super) fn dependence(study: &Study) -> String {
+pub(crate) fn dependence(study: &Study) -> String {
     let pairs = study.correlations.len();
     let together: usize = study.drawn_together.iter().map(|one| one.inputs.len()).sum();
     let correlated = match pairs {

@@ -3,19 +3,21 @@
 
 use super::CONFIDENCE;
 use super::trade::proportion;
+use crate::campaign::Found;
 use crate::campaign::common_numbers::{Breaches, Event};
 use crate::campaign::known::{Chart, INNER, KnownOutcomes, Map, Second, Stage};
 use crate::error::Result;
 use crate::numerics::interval::Estimate;
+use crate::numerics::words::{self, Word};
 use crate::reliability::demonstration::{Requirement, Verdict};
 use crate::reliability::jackknife::delete_a_group;
 use crate::reliability::nested::untold;
 use crate::reliability::probability::Proportion;
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What becomes known when, and what that settles.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct KnownFinding {
     /// Why there is nothing to say.
     pub none: Option<String>,
@@ -28,7 +30,7 @@ pub struct KnownFinding {
 }
 
 /// Whether to go, given two measured values.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GoMap {
     /// Paths of the two.
     pub paths: (String, String),
@@ -51,10 +53,11 @@ pub struct GoMap {
 }
 
 /// P(any breach) given what is known by some time, over everything that may turn out by then.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StageFinding {
     /// The time: `at build`, `on the day`.
-    pub known: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub known: Word,
     /// Inputs known by then.
     pub inputs: usize,
     /// Sets of known values behind the numbers, and continuations of each.
@@ -73,7 +76,7 @@ pub struct StageFinding {
 }
 
 /// Whether to go, given a measured value.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GoChart {
     /// Path of the input.
     pub path: String,
@@ -90,7 +93,7 @@ pub struct GoChart {
 }
 
 /// One row of a go/no-go chart.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GoRow {
     /// The measured value, SI.
     pub value: f64,
@@ -105,7 +108,7 @@ pub struct GoRow {
 }
 
 /// Whether to go.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GoAnswer {
     /// P is demonstrated to be at most what is allowed.
@@ -122,15 +125,12 @@ pub enum GoAnswer {
 const SHARES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 
 /// What becomes known when, or why there is nothing to say.
-pub(super) fn known(
-    study: &Study,
-    outcomes: &std::result::Result<KnownOutcomes, String>,
-) -> Result<KnownFinding> {
+pub(crate) fn known(study: &Study, outcomes: &Found<KnownOutcomes>) -> Result<KnownFinding> {
     let outcomes = match outcomes {
         Ok(outcomes) => outcomes,
         Err(why) => {
             return Ok(KnownFinding {
-                none: Some(why.clone()),
+                none: Some(why.to_string()),
                 stages: Vec::new(),
                 charts: Vec::new(),
                 map: None,

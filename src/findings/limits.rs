@@ -1,17 +1,20 @@
 //! The limits that a descent is judged by, and where each comes from.
 
+use crate::numerics::words::{self, Word};
 use crate::study::{Limit, Study};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// One limit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LimitFinding {
     /// Name of the limit.
     pub limit: String,
     /// Name of the outcome.
-    pub outcome: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub outcome: Word,
     /// `max` or `min`.
-    pub side: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub side: Word,
     /// The limit, SI.
     pub value: f64,
     /// The limit as written.
@@ -23,7 +26,7 @@ pub struct LimitFinding {
 }
 
 /// The limits of a study.
-pub(super) fn limits(study: &Study) -> Vec<LimitFinding> {
+pub(crate) fn limits(study: &Study) -> Vec<LimitFinding> {
     let finding = |limit: &Limit| LimitFinding {
         limit: limit.name(),
         outcome: limit.outcome.name(),

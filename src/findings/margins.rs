@@ -4,17 +4,19 @@ use super::CONFIDENCE;
 use crate::campaign::{Record, in_parallel};
 use crate::error::Result;
 use crate::numerics::interval::{Earned, Interval};
+use crate::numerics::words::{self, Word};
 use crate::reliability::quantiles::{OrderedSample, REPORTED};
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The margin of one limit, SI: negative is a breach.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MarginFinding {
     /// Name of the limit.
     pub limit: String,
     /// Name of the outcome.
-    pub outcome: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub outcome: Word,
     /// The limit as written.
     pub limit_text: String,
     /// The limit, SI.
@@ -24,7 +26,7 @@ pub struct MarginFinding {
 }
 
 /// The margin that a share of the flights keeps.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MarginQuantile {
     /// The share of flights.
     pub share: f64,
@@ -35,7 +37,7 @@ pub struct MarginQuantile {
 }
 
 /// The margins of every limit. A share p keeps at least minus the p-quantile of the exceedance.
-pub(super) fn margins(study: &Study, record: &Record) -> Result<Vec<MarginFinding>> {
+pub(crate) fn margins(study: &Study, record: &Record) -> Result<Vec<MarginFinding>> {
     // With a replicated design the order statistics' intervals do not apply.
     let replicated = !record.by_replicate().is_empty();
     let limits = study.stated_limits();

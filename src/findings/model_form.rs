@@ -2,17 +2,19 @@
 
 use super::demonstration::VerdictWord;
 use super::trade::Paired;
+use crate::campaign::Found;
 use crate::campaign::common_numbers::Event;
 use crate::campaign::model_form::{Form, ModelFormOutcomes};
 use crate::descent::{Model, OutcomeQuantity};
 use crate::error::Result;
 use crate::numerics::interval::Estimate;
+use crate::numerics::words::{self, Word};
 use crate::reliability::demonstration::{Requirement, Verdict};
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The study's samples by either thermal model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModelFormFinding {
     /// Samples of either form: the study's first, the same for both.
     pub samples: u64,
@@ -27,10 +29,11 @@ pub struct ModelFormFinding {
 }
 
 /// One form of the model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FormFinding {
     /// Name in study files.
-    pub model: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub model: Word,
     /// Whether temperature is resolved over the radius and across the film.
     pub detailed: bool,
     /// P(any breach).
@@ -38,7 +41,8 @@ pub struct FormFinding {
     /// What these samples alone say of the requirement; `None` without one, or where samples are not independent.
     pub verdict: Option<VerdictWord>,
     /// Outcomes of the nominal descent that are limited: name, value in SI.
-    pub nominal: Vec<(&'static str, f64)>,
+    #[serde(deserialize_with = "words::with")]
+    pub nominal: Vec<(Word, f64)>,
     /// Limits that the nominal descent breaches.
     pub nominal_breaches: Vec<String>,
 }
@@ -47,9 +51,9 @@ pub struct FormFinding {
 ///
 /// # Errors
 /// If a statistic refuses the counts.
-pub(super) fn model_form(
+pub(crate) fn model_form(
     study: &Study,
-    outcomes: &std::result::Result<ModelFormOutcomes, String>,
+    outcomes: &Found<ModelFormOutcomes>,
 ) -> Result<ModelFormFinding> {
     let found = match outcomes {
         Ok(found) => found,
@@ -59,7 +63,7 @@ pub(super) fn model_form(
                 forms: Vec::new(),
                 difference: None,
                 verdict_depends: None,
-                none: Some(why.clone()),
+                none: Some(why.to_string()),
             });
         }
     };

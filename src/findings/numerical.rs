@@ -4,20 +4,22 @@ use super::demonstration::{VerdictFinding, VerdictWord};
 use super::percent::percent;
 use crate::campaign::{Record, Verification};
 use crate::error::Result;
+use crate::numerics::words::{self, Word};
 use crate::reliability::demonstration::{Requirement, Verdict};
 use crate::reliability::probability::Proportion;
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The numerical error, measured.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NumericalFinding {
     /// Samples whose outcomes were compared with the plain integrator's.
     pub compared: usize,
     /// How many of them are from the start of the run; the others are its most extreme ones.
     pub first: usize,
     /// Worst relative error of each outcome over them.
-    pub worst_relative_error: Vec<(&'static str, f64)>,
+    #[serde(deserialize_with = "words::with")]
+    pub worst_relative_error: Vec<(Word, f64)>,
     /// One entry a limit.
     pub limits: Vec<NumericalLimit>,
     /// Why the verdict is withdrawn, where what was measured leaves none.
@@ -27,7 +29,7 @@ pub struct NumericalFinding {
 }
 
 /// What the numerical error could have done to one probability.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NumericalLimit {
     /// Name of the limit.
     pub limit: String,
@@ -44,7 +46,7 @@ pub struct NumericalLimit {
 }
 
 /// The measurement of a run.
-pub(super) fn numerical(
+pub(crate) fn numerical(
     study: &Study,
     record: &Record,
     verification: &Verification,
@@ -158,7 +160,7 @@ fn statement(study: &Study, verification: &Verification, limits: &[NumericalLimi
 ///
 /// # Errors
 /// If the study's confidence is none.
-pub(super) fn heed(
+pub(crate) fn heed(
     study: &Study,
     record: &Record,
     verification: &Verification,

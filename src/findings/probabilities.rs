@@ -10,13 +10,13 @@ use crate::reliability::breach_counts::BreachCounts;
 use crate::reliability::probability::Proportion;
 use crate::reliability::replicates::from_replicate_counts;
 use crate::study::{Limit, LimitKind, Study};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Fewer breaches than this are stated as an upper bound.
 const FEW: u64 = 10;
 
 /// Which event a probability is of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EventKind {
     /// One limit is breached.
@@ -28,7 +28,7 @@ pub enum EventKind {
 }
 
 /// The probability of one event.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ProbabilityFinding {
     /// Kind of event.
     pub kind: EventKind,
@@ -71,7 +71,7 @@ pub(super) fn breach_of(limit: &Limit) -> String {
 }
 
 /// Every event of a study: each limit, any of them, each pair.
-pub(super) fn probabilities(study: &Study, record: &Record) -> Result<Vec<ProbabilityFinding>> {
+pub(crate) fn probabilities(study: &Study, record: &Record) -> Result<Vec<ProbabilityFinding>> {
     let mut found = Vec::new();
     let count = study.limits.len();
     let title = |i: usize| title_of(&study.limits[i]);

@@ -8,11 +8,11 @@ use crate::reliability::agreement::Agreement;
 use crate::reliability::estimate::{Estimate, Method};
 use crate::reliability::event::Event;
 use crate::study::{LimitKind, Study};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// One rare event.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RareFinding {
     /// Names of the limits concerned.
     pub limits: Vec<String>,
@@ -31,7 +31,7 @@ pub struct RareFinding {
 }
 
 /// The most likely way to breach.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DesignPointFinding {
     /// Distance from the origin in standard deviations, β; negative where the medians breach.
     pub reliability_index: f64,
@@ -46,7 +46,7 @@ pub struct DesignPointFinding {
 }
 
 /// One input at a design point.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DesignPointInput {
     /// Dotted path.
     pub path: String,

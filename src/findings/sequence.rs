@@ -7,10 +7,10 @@ use crate::reliability::adaptive::{AdaptiveMonteCarlo, Stop, Until};
 use crate::reliability::confidence_sequence::confidence_sequence;
 use crate::reliability::probability::Proportion;
 use crate::study::{StoppingPlan, Study};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Why the sampling ended where it did.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StoppingFinding {
     /// What it waited for.
     pub until: Until,
@@ -27,7 +27,7 @@ pub struct StoppingFinding {
 }
 
 /// Why the sampling ended, if that was decided while sampling.
-pub(super) fn stopping(
+pub(crate) fn stopping(
     study: &Study,
     samples: u64,
     reason: Option<Stop>,

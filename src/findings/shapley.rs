@@ -2,17 +2,18 @@
 
 use super::CONFIDENCE;
 use super::drivers::too_few;
+use super::named::Output;
 use crate::campaign::common_numbers::Event;
-use crate::campaign::in_parallel;
 use crate::campaign::shapley::ShapleyOutcomes;
+use crate::campaign::{Found, in_parallel};
 use crate::descent::OutcomeQuantity;
 use crate::error::Result;
 use crate::numerics::interval::Estimate;
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The Shapley effects of the limited outcomes and of a breach of any limit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ShapleyFinding {
     /// Why there are none.
     pub none: Option<String>,
@@ -25,10 +26,10 @@ pub struct ShapleyFinding {
 }
 
 /// The Shapley effects of one output.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ShapleyOutput {
-    /// The output: an outcome's name, or `breach.any`.
-    pub name: String,
+    /// The output: an outcome, or any breach.
+    pub name: Output,
     /// Variance of the output.
     pub variance: Option<f64>,
     /// Why the effects on a breach are not to be read: too few breaches, or too few descents without one.
@@ -40,14 +41,11 @@ pub struct ShapleyOutput {
 }
 
 /// The Shapley effects of a study, or why there are none.
-pub(super) fn shapley(
-    study: &Study,
-    outcomes: &std::result::Result<ShapleyOutcomes, String>,
-) -> Result<ShapleyFinding> {
+pub(crate) fn shapley(study: &Study, outcomes: &Found<ShapleyOutcomes>) -> Result<ShapleyFinding> {
     let outcomes = match outcomes {
         Ok(outcomes) => outcomes,
         Err(why) => {
-            let none = Some(why.clone());
+            let none = Some(why.to_string());
             return Ok(ShapleyFinding { none, walks: 0, descents: 0, outputs: Vec::new() });
         }
     };
@@ -61,9 +59,9 @@ pub(super) fn shapley(
         let (name, values) = match output {
             Some(quantity) => {
                 let column = outcomes.outcomes.column(*quantity as usize);
-                (quantity.name().to_owned(), column.to_vec())
+                (Output::Outcome(*quantity), column.to_vec())
             }
-            None => ("breach.any".to_owned(), any_breach(study, outcomes)),
+            None => (Output::AnyBreach, any_breach(study, outcomes)),
         };
         let found = outcomes.walks.effects(&values, CONFIDENCE)?;
         let names = outcomes.factors.iter().map(|factor| factor.name.clone());

@@ -160,9 +160,8 @@ pub fn sweep(
     let choice = choice(grid);
     let lines = lines(grid, choice);
     let xs = &grid.paths[choice].values;
-    let searched: Vec<(Estimate, Option<usize>)> =
-        lines.iter().map(|line| searched(xs, line, cells)).collect();
-    let nearest: Vec<Option<usize>> = searched.iter().map(|(_, at)| *at).collect();
+    let searched: Vec<_> = lines.iter().map(|line| searched(xs, line, cells)).collect();
+    let nearest: Vec<Option<usize>> = searched.iter().map(|found| found.at).collect();
     let mut confirming = None;
     if let Some(samples) = samples {
         let anew = found_by_looking(&lines, &nearest, &found);

@@ -1,6 +1,6 @@
 //! The best value of a swept path, with its uncertainty, and the range that meets the requirement.
 
-use super::design_value::best_value;
+use super::design_value::{Unresolved, best_value};
 use super::known::GoAnswer;
 use super::sweep::CellFinding;
 use crate::campaign::sweep::{Cell, GROUPS, Grid, Meaning, Sampled};
@@ -14,6 +14,9 @@ pub struct BestFinding {
     pub given: Option<f64>,
     /// The value at which P(any breach) is least.
     pub best: Estimate,
+    /// Why that has no interval; `None` also where there is no such value.
+    #[serde(skip)]
+    pub unresolved: Option<Unresolved>,
     /// P(any breach) at the nearest setting, at points that the search has not seen.
     pub probability: Option<Estimate>,
     /// Ends of the settings at which the requirement is demonstrated, at points that the search has not seen.
@@ -63,15 +66,30 @@ fn longest_run(line: &[usize], holds: impl Fn(usize) -> bool) -> Option<(usize, 
     longest
 }
 
+/// The setting of one line of cells with the least P(any breach).
+#[derive(Debug, Clone)]
+pub(super) struct Searched {
+    best: Estimate,
+    unresolved: Option<Unresolved>,
+    /// The cell nearest to it.
+    pub at: Option<usize>,
+}
+
+impl Searched {
+    fn nothing(why: &str) -> Self {
+        Searched { best: Estimate::none(why), unresolved: None, at: None }
+    }
+}
+
 /// The setting of one line of cells with the least P(any breach), and the cell nearest to it.
-pub(super) fn searched(xs: &[f64], line: &[usize], cells: &[Cell]) -> (Estimate, Option<usize>) {
+pub(super) fn searched(xs: &[f64], line: &[usize], cells: &[Cell]) -> Searched {
     let sampled: Option<Vec<&Sampled>> =
         line.iter().map(|&cell| cells[cell].sampled.as_ref()).collect();
-    let (best, at) = match sampled {
+    let found = match sampled {
         Some(sampled) => least(xs, &sampled),
-        None => (Estimate::none("no samples were asked for"), None),
+        None => Searched::nothing("no samples were asked for"),
     };
-    (best, at.map(|at| line[at]))
+    Searched { at: found.at.map(|at| line[at]), ..found }
 }
 
 /// The best value of one line of cells, of which those found by looking have been estimated anew; what was found is
@@ -81,7 +99,7 @@ pub(super) fn best(
     choice: usize,
     line: &[usize],
     cells: &[CellFinding],
-    (best, at): (Estimate, Option<usize>),
+    Searched { best, unresolved, at }: Searched,
 ) -> BestFinding {
     let xs = &grid.paths[choice].values;
     let ends = |run: Option<(usize, usize)>| run.map(|(a, b)| (xs[a], xs[b]));
@@ -96,6 +114,7 @@ pub(super) fn best(
     BestFinding {
         given,
         best,
+        unresolved,
         probability: at.and_then(|at| cells[at].confirmed.clone()),
         met: ends(longest_run(line, |cell| cells[cell].answer == GoAnswer::Go)),
         open: ends(longest_run(line, |cell| {
@@ -120,28 +139,29 @@ fn feasible(xs: &[f64], margins: &[f64]) -> Option<(f64, f64)> {
 }
 
 /// The setting with the least P(any breach) and the place of the computed one nearest to it.
-fn least(xs: &[f64], sampled: &[&Sampled]) -> (Estimate, Option<usize>) {
+fn least(xs: &[f64], sampled: &[&Sampled]) -> Searched {
     let worst: Vec<u64> = sampled.iter().map(|cell| cell.any.most_breaches()).collect();
     let samples = sampled.first().map_or(0, |cell| cell.any.samples);
     let Some(smallest) = worst.iter().copied().min() else {
-        return (Estimate::none("there is no setting"), None);
+        return Searched::nothing("there is no setting");
     };
     if smallest == samples {
-        return (Estimate::none("every sample breaches a limit at every setting"), None);
+        return Searched::nothing("every sample breaches a limit at every setting");
     }
     let places: Vec<usize> = (0..xs.len()).collect();
     let Some((a, b)) = longest_run(&places, |k| worst[k] == smallest) else {
-        return (Estimate::none("there is no setting"), None);
+        return Searched::nothing("there is no setting");
     };
     let middle = a + (b - a) / 2;
     if b > a {
-        let why = match smallest {
-            0 => format!("no breach was seen from the setting {} to {} (SI)", xs[a], xs[b]),
-            _ => format!("P is the same from the setting {} to {} (SI)", xs[a], xs[b]),
+        let (unresolved, what) = match smallest {
+            0 => (Unresolved::NoBreach, "no breach was seen"),
+            _ => (Unresolved::NoClearMinimum, "P is the same"),
         };
-        let value = 0.5 * (xs[a] + xs[b]);
-        let interval = Earned::none(why);
-        return (Estimate { value: Some(value), standard_error: None, interval }, Some(middle));
+        let interval = Earned::none(format!("{what} from the setting {} to {} (SI)", xs[a], xs[b]));
+        let value = Some(0.5 * (xs[a] + xs[b]));
+        let best = Estimate { value, standard_error: None, interval };
+        return Searched { best, unresolved: Some(unresolved), at: Some(middle) };
     }
     // The parabola is asked where P is of the order of its least value, five settings at least.
     let near = |k: usize| 2 * worst[k] <= 3 * smallest + 10;
@@ -163,22 +183,22 @@ fn least(xs: &[f64], sampled: &[&Sampled]) -> (Estimate, Option<usize>) {
         };
         sampled[from..=to].iter().map(kept).collect()
     };
-    let mut estimate = best_value(&xs[from..=to], &shares, (xs[0], xs[xs.len() - 1]));
-    if let (Some(wide), Earned::Interval(interval)) = (estimate.value, &mut estimate.interval) {
+    let (mut best, unresolved) = best_value(&xs[from..=to], &shares, (xs[0], xs[xs.len() - 1]));
+    if let (Some(wide), Earned::Interval(interval)) = (best.value, &mut best.interval) {
         // What a parabola is not shows in how far that through the nearest three settings differs.
         let three = (middle - from).saturating_sub(1)..=(middle - from + 1).min(to - from);
         let narrow = |left_out: Option<usize>| shares(left_out)[three.clone()].to_vec();
         let settings = &xs[from..=to][three.clone()];
-        let other = best_value(settings, &narrow, (xs[0], xs[xs.len() - 1])).value;
+        let other = best_value(settings, &narrow, (xs[0], xs[xs.len() - 1])).0.value;
         let apart = other.map_or(0.0, |other| (other - wide).abs());
         interval.lower -= apart;
         interval.upper += apart;
         interval.method = "parabola through ln P, delete-a-group jackknife, and its own misfit";
     }
-    let nearest = estimate.value.and_then(|value| {
+    let at = best.value.and_then(|value| {
         places.into_iter().min_by(|&a, &b| (xs[a] - value).abs().total_cmp(&(xs[b] - value).abs()))
     });
-    (estimate, nearest)
+    Searched { best, unresolved, at }
 }
 
 #[cfg(test)]
@@ -216,12 +236,12 @@ mod tests {
             let cells = cells(centre);
             least(&xs, &cells.iter().collect::<Vec<_>>())
         };
-        let (best, at) = found(103.0);
-        assert!((best.value.unwrap() - 103.0).abs() < 0.01, "{best:?}");
-        assert_eq!(at, Some(5));
-        let (best, at) = found(60.0);
-        assert_eq!((best.value, at), (Some(80.0), Some(0)));
-        assert!(best.interval.why_none().unwrap().contains("end of its range"));
+        let inside = found(103.0);
+        assert!((inside.best.value.unwrap() - 103.0).abs() < 0.01, "{inside:?}");
+        assert_eq!((inside.at, inside.unresolved), (Some(5), None));
+        let end = found(60.0);
+        assert_eq!((end.best.value, end.at), (Some(80.0), Some(0)));
+        assert_eq!(end.unresolved, Some(Unresolved::EndOfRange));
     }
 
     #[test]

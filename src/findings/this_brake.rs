@@ -31,7 +31,7 @@ pub(super) fn with_interval(estimate: &Estimate) -> Option<String> {
 
 /// The verdict on the average, made the two statements of a study with epistemic inputs; the requirement says which of them
 /// decides.
-pub(super) fn two_statements(
+pub(crate) fn two_statements(
     study: &Study,
     average: VerdictFinding,
     epistemic: &EpistemicFinding,

@@ -5,19 +5,20 @@ use super::CONFIDENCE;
 use super::derivatives::{DerivativeFinding, derivatives};
 use super::design_value::{DesignValueFinding, design_value};
 use crate::campaign::common_numbers::{Breaches, Event};
-use crate::campaign::in_parallel;
 use crate::campaign::trade::{Curve, HEADLINES, Halved, Parameter, TradeOutcomes};
+use crate::campaign::{Found, in_parallel};
 use crate::error::Result;
 use crate::numerics::interval::{Earned, Estimate};
+use crate::numerics::words::{self, Word};
 use crate::reliability::paired::{PairedCounts, replicated_difference};
 use crate::reliability::probability::Proportion;
 use crate::reliability::replicates::from_replicate_counts;
 use crate::sensitivity::reweighting::{Reweighted, reweighted};
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The trade of tolerances of a study.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TradeFinding {
     /// Why there is none.
     pub none: Option<String>,
@@ -42,7 +43,7 @@ pub struct TradeFinding {
 }
 
 /// One tightening: the spread of a factor halved.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TighteningFinding {
     /// Path of the input, or name of the group.
     pub factor: String,
@@ -61,20 +62,21 @@ pub struct TighteningFinding {
 }
 
 /// P(any breach) against one parameter of one factor.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TradeCurve {
     /// Path of the input, or name of the group.
     pub factor: String,
     /// How many inputs it is.
     pub inputs: usize,
     /// `spread`: a factor of the card's; `mean`: a move of the mean, SI.
-    pub parameter: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub parameter: Word,
     /// The settings in ascending order, the base among them.
     pub points: Vec<TradePoint>,
 }
 
 /// One point of a trade curve.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TradePoint {
     /// Spread factor, or move of the mean, SI.
     pub setting: f64,
@@ -89,15 +91,12 @@ pub struct TradePoint {
 }
 
 /// The trade of a study, or why there is none.
-pub(super) fn trade(
-    study: &Study,
-    outcomes: &std::result::Result<TradeOutcomes<'_>, String>,
-) -> Result<TradeFinding> {
+pub(crate) fn trade(study: &Study, outcomes: &Found<TradeOutcomes<'_>>) -> Result<TradeFinding> {
     let outcomes = match outcomes {
         Ok(outcomes) => outcomes,
         Err(why) => {
             return Ok(TradeFinding {
-                none: Some(why.clone()),
+                none: Some(why.to_string()),
                 samples: 0,
                 base: None,
                 best: Vec::new(),
@@ -192,7 +191,7 @@ impl Paired {
 }
 
 /// A proportion with its exact interval.
-pub(super) fn proportion(counts: &Proportion) -> Result<Estimate> {
+pub(crate) fn proportion(counts: &Proportion) -> Result<Estimate> {
     let value = counts.estimate();
     let computed = (counts.samples - counts.faults) as f64;
     let standard_error = value.map(|p| (p * (1.0 - p) / computed).sqrt());

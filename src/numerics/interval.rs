@@ -1,10 +1,11 @@
 //! Confidence intervals that say where they come from, and the lack of one that says why.
 
-use serde::Serialize;
+use super::words::{self, Word};
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// A confidence interval `[lower, upper]` of a number, in that number's unit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Interval {
     /// The lower end; a one-sided upper bound has the smallest possible value here.
     pub lower: f64,
@@ -13,7 +14,8 @@ pub struct Interval {
     /// The probability, before the samples were drawn, that the interval would hold the truth.
     pub confidence: f64,
     /// How it was made: "Clopper-Pearson", "Student t over replicates", …
-    pub method: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub method: Word,
 }
 
 impl Interval {
@@ -31,7 +33,7 @@ impl Interval {
 /// An interval that a method has earned, or the reason why there is none.
 ///
 /// Serialised as the interval's own fields, or as `{"none": "why"}`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Earned {
     /// No interval, and why.
@@ -80,7 +82,7 @@ impl fmt::Display for Earned {
 }
 
 /// An estimated number with its standard error and interval, each only if it was earned.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The number; `None` if it is not defined, and then `interval` says why.
     pub value: Option<f64>,

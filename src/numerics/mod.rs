@@ -8,3 +8,4 @@ pub mod interval;
 pub mod lanes;
 pub mod real;
 pub mod special;
+pub mod words;

@@ -11,10 +11,10 @@ use super::event::Event;
 use super::probability::Proportion;
 use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What ends the sampling, besides the budget.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Until {
     /// The union's interval reaches no farther from its estimate than this share of it.
@@ -27,7 +27,7 @@ pub enum Until {
 }
 
 /// Why the sampling ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stop {
     /// The relative error was reached.

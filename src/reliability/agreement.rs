@@ -10,14 +10,14 @@
 use super::estimate::{Estimate, Method};
 use crate::error::{Error, Result};
 use crate::numerics::special::normal;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Estimates nearer to each other than this share are the same number: sums of many terms differ by as much according to
 /// the order in which they are summed.
 const ROUNDING: f64 = 1e-12;
 
 /// One pair of estimates compared.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// The two methods.
     pub methods: (Method, Method),
@@ -30,7 +30,7 @@ pub struct Comparison {
 }
 
 /// The check of all pairs.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Agreement {
     /// Whether every pair that could be compared agrees; none without a pair.
     pub agrees: Option<bool>,

@@ -50,8 +50,9 @@ pub struct CrossEntropyOptions {
     pub seed: u64,
 }
 
-impl Default for CrossEntropyOptions {
-    fn default() -> Self {
+impl CrossEntropyOptions {
+    /// The usual choices, with the seed of every stream.
+    pub fn seeded(seed: u64) -> Self {
         CrossEntropyOptions {
             samples_per_level: 2000,
             levels: 30,
@@ -61,7 +62,7 @@ impl Default for CrossEntropyOptions {
             defensive_share: 0.1,
             confidence: 0.95,
             checks: WeightChecks::default(),
-            seed: 0,
+            seed,
         }
     }
 }

@@ -20,9 +20,10 @@ pub struct CrudeOptions {
     pub seed: u64,
 }
 
-impl Default for CrudeOptions {
-    fn default() -> Self {
-        CrudeOptions { samples: 100_000, confidence: 0.95, seed: 0 }
+impl CrudeOptions {
+    /// The usual choices, with the seed of every stream.
+    pub fn seeded(seed: u64) -> Self {
+        CrudeOptions { samples: 100_000, confidence: 0.95, seed }
     }
 }
 

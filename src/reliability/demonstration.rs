@@ -12,7 +12,7 @@ use super::binomial_tails::{
 use super::probability::Proportion;
 use crate::error::{Error, Result};
 use crate::numerics::interval::Earned;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How many times less likely to fail than required the system is for which the producer's risk is
 /// stated: the discrimination ratio of acceptance tests, for which 2 is customary.
@@ -22,7 +22,7 @@ pub const DISCRIMINATION_RATIO: f64 = 2.0;
 const MOST_SAMPLES: u64 = 1 << 52;
 
 /// A reliability that must be shown at a confidence.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Requirement {
     /// Least probability R that no limit is breached.
     pub reliability: f64,
@@ -91,7 +91,7 @@ impl Requirement {
 }
 
 /// What counts say about a requirement.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// Demonstrated at the stated confidence.
@@ -103,7 +103,7 @@ pub enum Verdict {
 }
 
 /// A verdict with its evidence.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Demonstration {
     /// What was to be shown.
     pub requirement: Requirement,

@@ -8,7 +8,7 @@ use super::event::{Evaluator, Event, FaultReading};
 use super::limit_state::LimitState;
 use super::vectors::distance;
 use crate::error::{Error, Result};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// How design points are searched.
@@ -32,8 +32,9 @@ pub struct SearchOptions {
     pub seed: u64,
 }
 
-impl Default for SearchOptions {
-    fn default() -> Self {
+impl SearchOptions {
+    /// The usual choices, with the seed of every stream.
+    pub fn seeded(seed: u64) -> Self {
         SearchOptions {
             directions: 16,
             start_radius: 3.0,
@@ -42,13 +43,13 @@ impl Default for SearchOptions {
             distance_tolerance: 1e-5,
             angle_tolerance: 1e-3,
             farthest: 12.0,
-            seed: 0,
+            seed,
         }
     }
 }
 
 /// A half space of breaches: direction · u ≥ reliability_index.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HalfSpace {
     /// Unit vector from safe to breach, α.
     pub direction: Vec<f64>,
@@ -57,7 +58,7 @@ pub struct HalfSpace {
 }
 
 /// A converged design point.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DesignPoint {
     /// The limits that are breached there: one, or all members of an intersection.
     pub limits: Vec<usize>,
@@ -74,7 +75,7 @@ pub struct DesignPoint {
 }
 
 /// Why a search gave no design point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Unconverged {
     /// A margin on the way could not be evaluated.
@@ -108,7 +109,7 @@ impl fmt::Display for Unconverged {
 }
 
 /// What the searches of one event found.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DesignPoints {
     /// Distinct converged points, nearest first (by β).
     pub points: Vec<DesignPoint>,

@@ -35,15 +35,16 @@ pub struct DirectionalOptions {
     pub seed: u64,
 }
 
-impl Default for DirectionalOptions {
-    fn default() -> Self {
+impl DirectionalOptions {
+    /// The usual choices, with the seed of every stream.
+    pub fn seeded(seed: u64) -> Self {
         DirectionalOptions {
             directions: 2000,
             cells: 16,
             beyond: 1e-14,
             confidence: 0.95,
             checks: WeightChecks::default(),
-            seed: 0,
+            seed,
         }
     }
 }

@@ -2,10 +2,10 @@
 
 use super::event::Event;
 use crate::numerics::interval::{Earned, Interval};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A method that estimates the probability of an event.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
     /// Crude Monte Carlo.
@@ -49,7 +49,7 @@ impl Method {
 }
 
 /// A method's answer about one event.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The method.
     pub method: Method,

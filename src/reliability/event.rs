@@ -3,10 +3,10 @@
 use super::limit_state::LimitState;
 use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A set of outcomes whose probability is asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Event {
     /// This limit is breached.

@@ -42,15 +42,16 @@ pub struct ImportanceOptions {
     pub seed: u64,
 }
 
-impl Default for ImportanceOptions {
-    fn default() -> Self {
+impl ImportanceOptions {
+    /// The usual choices, with the seed of every stream.
+    pub fn seeded(seed: u64) -> Self {
         ImportanceOptions {
             samples: 20_000,
             defensive_share: 0.1,
             confidence: 0.95,
             checks: WeightChecks::default(),
-            search: SearchOptions::default(),
-            seed: 0,
+            search: SearchOptions::seeded(seed),
+            seed,
         }
     }
 }

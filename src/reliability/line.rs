@@ -59,15 +59,16 @@ pub struct LineOptions {
     pub seed: u64,
 }
 
-impl Default for LineOptions {
-    fn default() -> Self {
+impl LineOptions {
+    /// The usual choices, with the seed of every stream.
+    pub fn seeded(seed: u64) -> Self {
         LineOptions {
             scrambles: 32,
             lines: 32,
             reach: 8.2,
             confidence: 0.95,
-            search: SearchOptions::default(),
-            seed: 0,
+            search: SearchOptions::seeded(seed),
+            seed,
         }
     }
 }
@@ -117,8 +118,7 @@ pub fn line_sampling(
             let whole = SearchedLineOptions {
                 confidence: options.confidence,
                 search: options.search.clone(),
-                seed: options.seed,
-                ..SearchedLineOptions::default()
+                ..SearchedLineOptions::seeded(options.seed)
             };
             let mut estimate = searched_lines(state, event, &whole)?;
             estimate.evaluations += spent.evaluations;

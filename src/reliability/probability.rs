@@ -9,13 +9,13 @@ use crate::error::{Error, Result};
 use crate::numerics::elementary::{exp, exp_m1, ln};
 use crate::numerics::interval::{Earned, Interval};
 use crate::numerics::special::{beta, normal};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Counts of an event among independent samples, some of which could not be computed.
 ///
 /// The counts are breaches m, faults f and samples N, with m + f ≤ N. A fault is neither a breach nor
 /// clean: every bound below holds whatever the faulted samples would have been.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Proportion {
     /// Samples that breached, m.
     pub breaches: u64,

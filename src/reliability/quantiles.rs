@@ -10,7 +10,7 @@ use super::binomial_tails::{
 use super::demonstration::minimum_samples;
 use crate::error::{Error, Result};
 use crate::numerics::interval::{Earned, Interval};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// The quantiles of a margin that a report states.
@@ -26,7 +26,7 @@ pub struct OrderedSample<'a> {
 }
 
 /// A quantile with its interval.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Quantile {
     /// Which quantile: the probability p below it.
     pub probability: f64,

@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::numerics::elementary::{exp_m1, ln};
 use crate::numerics::interval::{Earned, Estimate, Interval};
 use crate::numerics::special::{beta, normal, student};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 const METHOD: &str = "Korn and Graubard over replicates";
 const METHOD_FEW: &str =
@@ -28,7 +28,7 @@ const FEW_BREACHES: f64 = 100.0;
 const MOST_EFFECTIVE: f64 = 1e12;
 
 /// A probability estimated from independent replicates of one design.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Replicated {
     /// Number of replicates, R.
     pub replicates: usize,

@@ -48,16 +48,17 @@ pub struct SearchedLineOptions {
     pub seed: u64,
 }
 
-impl Default for SearchedLineOptions {
-    fn default() -> Self {
+impl SearchedLineOptions {
+    /// The usual choices, with the seed of every stream.
+    pub fn seeded(seed: u64) -> Self {
         SearchedLineOptions {
             lines: 2000,
             reach: 8.0,
             cells: 24,
             confidence: 0.95,
             checks: WeightChecks::default(),
-            search: SearchOptions::default(),
-            seed: 0,
+            search: SearchOptions::seeded(seed),
+            seed,
         }
     }
 }

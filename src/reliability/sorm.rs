@@ -24,9 +24,10 @@ pub struct SormOptions {
     pub difference_step: f64,
 }
 
-impl Default for SormOptions {
-    fn default() -> Self {
-        SormOptions { search: SearchOptions::default(), difference_step: 0.05 }
+impl SormOptions {
+    /// The usual choices, with the seed of every stream.
+    pub fn seeded(seed: u64) -> Self {
+        SormOptions { search: SearchOptions::seeded(seed), difference_step: 0.05 }
     }
 }
 

@@ -47,15 +47,16 @@ pub struct SubsetOptions {
     pub seed: u64,
 }
 
-impl Default for SubsetOptions {
-    fn default() -> Self {
+impl SubsetOptions {
+    /// The usual choices, with the seed of every stream.
+    pub fn seeded(seed: u64) -> Self {
         SubsetOptions {
             samples_per_level: 1000,
             level_probability: 0.1,
             replicates: 10,
             least_probability: 1e-15,
             confidence: 0.95,
-            seed: 0,
+            seed,
         }
     }
 }

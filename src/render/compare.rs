@@ -3,7 +3,8 @@
 use super::figures_of_speech::{bare, count, probability, probability_interval, value};
 use super::markdown;
 use super::tables::table;
-use crate::findings::compare::{ChangeFinding, CompareFinding, DriverChange, EventChange};
+use crate::analysis::compare::{ChangeFinding, CompareFinding, DriverChange, EventChange};
+use crate::findings::VerdictWord;
 use crate::numerics::interval::Estimate;
 use crate::units::{Quantity, number};
 
@@ -65,7 +66,7 @@ pub fn compare_markdown(finding: &CompareFinding) -> String {
     text += "\n## The runs\n\n| run | title | verdict | samples | digest of the study |\n";
     text += "| --- | --- | --- | ---: | --- |\n";
     for run in &finding.runs {
-        let verdict = run.verdict.replace('_', " ");
+        let verdict = run.verdict.name().to_owned();
         let samples = count(run.samples);
         let digest = run.study_digest.get(..16).unwrap_or(&run.study_digest);
         let name = format!("`{}`", run.name);
@@ -80,11 +81,11 @@ const NOTHING: &str = "The two studies state the same.";
 /// The verdicts and the change of P(any breach).
 fn headline(finding: &CompareFinding) -> String {
     let [before, after] = &finding.runs;
-    let words = |word: &str| word.replace('_', " ").to_uppercase();
+    let words = |verdict: VerdictWord| verdict.name().to_uppercase();
     let verdict = if before.verdict == after.verdict {
-        format!("Verdict: {} in both runs.", words(&before.verdict))
+        format!("Verdict: {} in both runs.", words(before.verdict))
     } else {
-        format!("Verdict: {}, then {}.", words(&before.verdict), words(&after.verdict))
+        format!("Verdict: {}, then {}.", words(before.verdict), words(after.verdict))
     };
     let Some(any) = finding.probabilities.first() else { return verdict };
     let (Some(p), Some(q)) = (any.before.value, any.after.value) else { return verdict };
@@ -194,7 +195,7 @@ fn event(event: &EventChange) -> Vec<String> {
     vec![event.title.clone(), share(&event.before), share(&event.after), points(&event.difference)]
 }
 
-fn outcome(outcome: &crate::findings::compare::OutcomeChange) -> Vec<String> {
+fn outcome(outcome: &crate::analysis::compare::OutcomeChange) -> Vec<String> {
     let quantity = outcome.quantity.quantity();
     let mean = |mean: Option<f64>| mean.map_or("–".to_owned(), |mean| value(mean, quantity));
     let step = quantity.of_difference();
@@ -219,7 +220,7 @@ fn signed(si: f64, quantity: Quantity) -> String {
     if si > 0.0 { format!("+{text}") } else { text }
 }
 
-fn margin(change: &crate::findings::compare::MarginChange) -> Vec<String> {
+fn margin(change: &crate::analysis::compare::MarginChange) -> Vec<String> {
     let quantity = change.quantity.quantity().of_difference();
     let text = |side: Option<f64>| side.map_or("–".to_owned(), |m| minus(&value(m, quantity)));
     let moved = match (change.before, change.after) {

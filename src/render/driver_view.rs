@@ -1,7 +1,8 @@
 //! The drivers in a reader's words.
 
 use super::figures_of_speech::{count, probability};
-use crate::findings::{CONFIDENCE, DriverOutput, FactorFinding, Findings};
+use crate::analysis::Findings;
+use crate::findings::{CONFIDENCE, DriverOutput, FactorFinding, Output};
 use crate::numerics::interval::Estimate;
 use serde::Serialize;
 
@@ -71,7 +72,7 @@ pub(super) fn drivers(findings: &Findings) -> Drivers {
     );
     let limited: Vec<&str> = findings.margins.iter().map(|margin| margin.outcome).collect();
     let shown = |output: &&DriverOutput| {
-        output.name == "breach.any" || limited.contains(&output.name.as_str())
+        output.name == Output::AnyBreach || output.name.is_one_of(&limited)
     };
     let mut outputs: Vec<&DriverOutput> = drivers.outputs.iter().filter(shown).collect();
     outputs.sort_by_key(|output| !output.breach);
@@ -101,12 +102,12 @@ fn driver_table(output: &DriverOutput) -> DriverTable {
         sentence +=
             &format!(" No single member of a group has a total index above {strongest:.3}.");
     }
-    let mut explained: Vec<(&str, Vec<&str>)> = Vec::new();
+    let mut explained: Vec<(&str, Vec<String>)> = Vec::new();
     for factor in shown {
         let Some(text) = factor.indices.explanation.as_deref() else { continue };
         match explained.iter_mut().find(|(known, _)| *known == text) {
-            Some((_, names)) => names.push(&factor.name),
-            None => explained.push((text, vec![&factor.name])),
+            Some((_, names)) => names.push(factor.name.to_string()),
+            None => explained.push((text, vec![factor.name.to_string()])),
         }
     }
     let pairs = output.pairs.iter().map(|pair| {
@@ -132,7 +133,7 @@ fn driver_table(output: &DriverOutput) -> DriverTable {
             .map(|factor| DriverRow {
                 name: match factor.inputs {
                     1 => format!("`{}`", factor.name),
-                    many => format!("`{}`, {many} as one", factor.name.trim_end_matches(" (all)")),
+                    many => format!("`{}`, {many} as one", factor.name.name),
                 },
                 first: index(&factor.indices.first),
                 total: index(&factor.indices.total),

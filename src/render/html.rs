@@ -3,8 +3,9 @@
 
 use super::figures::{Figure, ReportFigures};
 use super::view::{View, view};
+use crate::analysis::Findings;
 use crate::error::{Error, Result};
-use crate::findings::{Findings, VerdictWord};
+use crate::findings::VerdictWord;
 use minijinja::{Environment, Value};
 use serde::Serialize;
 

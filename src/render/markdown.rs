@@ -3,8 +3,8 @@
 use super::figures::ReportFigures;
 use super::html::Sections;
 use super::view::{View, view};
+use crate::analysis::Findings;
 use crate::error::{Error, Result};
-use crate::findings::Findings;
 use minijinja::{AutoEscape, Environment};
 use serde::Serialize;
 

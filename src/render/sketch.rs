@@ -2,8 +2,9 @@
 //! one line. Nothing is wider than 80 columns.
 
 use super::figures_of_speech::probability;
+use crate::analysis::Findings;
 use crate::descent::OutcomeQuantity;
-use crate::findings::{Decision, Distribution, EventKind, Findings, VerdictWord};
+use crate::findings::{Decision, Distribution, EventKind, VerdictWord};
 use crate::units::{Quantity, display, number};
 
 /// Most columns of blocks.

@@ -4,10 +4,10 @@ use super::figures::Figure;
 use super::figures_of_speech::{count, maybe, probability, probability_interval, value};
 use super::markdown;
 use super::tables::table;
+use crate::findings::design_value::Unresolved;
 use crate::findings::known::GoAnswer;
 use crate::findings::sweep::{CellFinding, PathFinding, SweepFinding};
 use crate::findings::sweep_best::BestFinding;
-use crate::numerics::interval::Estimate;
 use crate::units::{Quantity, number};
 
 /// Most rows of a table on a terminal.
@@ -206,7 +206,7 @@ fn best_rows(sweep: &SweepFinding) -> (Vec<String>, Vec<Vec<String>>) {
         let mut row = vec![maybe(best.given, given.quantity)];
         if sampled {
             row.push(maybe(best.best.value, chosen.quantity));
-            row.push(interval(&best.best, chosen.quantity));
+            row.push(interval(best, chosen.quantity));
             let there = best.probability.as_ref();
             row.push(there.map_or("–".to_owned(), |p| {
                 let share = p.value.map_or("–".to_owned(), probability);
@@ -233,15 +233,15 @@ fn share(margin: f64) -> String {
     format!("{} %", number(100.0 * margin, 3))
 }
 
-/// The interval of a value, or in a word why there is none.
-fn interval(estimate: &Estimate, quantity: Quantity) -> String {
-    match (estimate.interval.interval(), estimate.value) {
+/// The interval of a best value, or in a word why there is none.
+fn interval(found: &BestFinding, quantity: Quantity) -> String {
+    match (found.best.interval.interval(), found.best.value) {
         (Some(i), _) => format!("{} … {}", bare(i.lower, quantity), value(i.upper, quantity)),
         (None, None) => "all breach".to_owned(),
-        (None, Some(_)) => match estimate.interval.why_none() {
-            Some(why) if why.contains("end of its range") => "end of the range".to_owned(),
-            Some(why) if why.contains("no breach") => "no failures".to_owned(),
-            _ => "not resolved".to_owned(),
+        (None, Some(_)) => match found.unresolved {
+            Some(Unresolved::EndOfRange) => "end of the range".to_owned(),
+            Some(Unresolved::NoBreach) => "no failures".to_owned(),
+            Some(Unresolved::NoClearMinimum) | None => "not resolved".to_owned(),
         },
     }
 }
@@ -308,9 +308,10 @@ fn best_sentence(sweep: &SweepFinding, chosen: &PathFinding, best: &BestFinding)
             share(margin)
         ));
     }
-    let why = |estimate: &Estimate| match estimate.interval.interval() {
-        Some(_) => format!("95 % interval {}", interval(estimate, chosen.quantity)),
-        None => format!("no interval: {}", interval(estimate, chosen.quantity)),
+    let said = interval(best, chosen.quantity);
+    let interval = match best.best.interval.interval() {
+        Some(_) => format!("95 % interval {said}"),
+        None => format!("no interval: {said}"),
     };
     let at = best.best.value?;
     let there = best.probability.as_ref().and_then(|p| p.value).map_or(String::new(), |p| {
@@ -322,9 +323,8 @@ fn best_sentence(sweep: &SweepFinding, chosen: &PathFinding, best: &BestFinding)
         )
     });
     Some(format!(
-        "P(any breach) is least at `{}` = {} ({}){there}.",
+        "P(any breach) is least at `{}` = {} ({interval}){there}.",
         chosen.path,
         value(at, chosen.quantity),
-        why(&best.best)
     ))
 }

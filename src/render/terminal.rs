@@ -3,7 +3,8 @@
 use super::sketch::sketches;
 use super::tables::table;
 use super::view::{Rare, RareRow, view};
-use crate::findings::{Findings, VerdictWord};
+use crate::analysis::Findings;
+use crate::findings::VerdictWord;
 
 /// Whether escape sequences are wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -141,7 +142,7 @@ fn rare(events: &[Rare], interval_header: &str) -> String {
         )));
     }
     let mut text = parts.join("\n");
-    for event in events.iter().filter(|event| event.agreement.starts_with("AGREEMENT")) {
+    for event in events.iter().filter(|event| event.disagree) {
         text += &format!("\n{}: {}", event.title, event.agreement);
     }
     text

@@ -1,10 +1,10 @@
 //! The trade of tolerances and the fair shares, in a reader's words.
 
 use super::figures_of_speech::{bare, count, probability, probability_interval, value};
-use crate::findings::ShapleyFinding;
 use crate::findings::derivatives::DerivativeFinding;
 use crate::findings::design_value::DesignValueFinding;
 use crate::findings::trade::{TighteningFinding, TradeCurve, TradeFinding};
+use crate::findings::{Output, ShapleyFinding};
 use crate::numerics::interval::Estimate;
 use crate::physics::parameters::Parameter;
 use crate::units::{Quantity, number};
@@ -69,13 +69,13 @@ pub(super) fn shares(finding: &ShapleyFinding) -> Shares {
     let mut effects: Vec<&(String, Estimate)> = finding
         .outputs
         .iter()
-        .filter(|output| output.name == "breach.any" && output.too_few.is_none())
+        .filter(|output| output.name == Output::AnyBreach && output.too_few.is_none())
         .flat_map(|output| &output.effects)
         .collect();
     let size = |effect: &(String, Estimate)| effect.1.value.unwrap_or(f64::NEG_INFINITY);
     effects.sort_by(|a, b| size(b).total_cmp(&size(a)));
     let shown = effects.iter().filter(|effect| effect.1.value.is_some());
-    let of_breach = finding.outputs.iter().find(|output| output.name == "breach.any");
+    let of_breach = finding.outputs.iter().find(|output| output.name == Output::AnyBreach);
     Shares {
         none: finding.none.clone(),
         too_few: of_breach.and_then(|output| output.too_few.clone()),

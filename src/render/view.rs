@@ -12,10 +12,10 @@ use super::known_view::{Known, known};
 use super::measures_view::{Measures, measures};
 use super::model_form_view::{ModelFormView, model_form};
 use super::trade_view::{Shares, Trade, shares, trade};
+use crate::analysis::Findings;
 use crate::descent::OutcomeQuantity;
 use crate::findings::{
-    CONFIDENCE, Decision, EventKind, Findings, LimitFinding, MarginFinding, RareFinding,
-    VerdictWord,
+    CONFIDENCE, Decision, EventKind, LimitFinding, MarginFinding, Output, RareFinding, VerdictWord,
 };
 use crate::study::NO_SOURCE;
 use crate::units::number;
@@ -94,6 +94,8 @@ pub(super) struct Rare {
     /// Which methods have no interval, and why; empty if all have one.
     pub without_interval: String,
     pub agreement: String,
+    /// Whether methods differ by more than their errors allow.
+    pub disagree: bool,
     pub story: Option<String>,
 }
 
@@ -261,8 +263,7 @@ fn verdict(findings: &Findings) -> Verdict {
             .outputs
             .iter()
             .find(|output| {
-                output.breach
-                    && output.name.strip_prefix("breach.") == p.limits.first().map(String::as_str)
+                matches!(&output.name, Output::Breach(limit) if Some(limit) == p.limits.first())
             })
             .and_then(|output| ranked(output).into_iter().next())
             .and_then(|factor| Some((factor, factor.indices.total.value?)));
@@ -365,6 +366,7 @@ fn rare(finding: &RareFinding) -> Rare {
             .map(|(k, _)| k),
         without_interval: finding.without_interval.join(" "),
         agreement: finding.agreement_statement.clone(),
+        disagree: finding.agreement.agrees == Some(false),
         story: finding.design_point.as_ref().map(|point| point.statement.clone()),
     }
 }

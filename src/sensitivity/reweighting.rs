@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::numerics::elementary::exp;
 use crate::numerics::interval::{Earned, Estimate, Interval};
 use crate::numerics::special::normal;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Effective samples, as a share of all, below which reweighting is not trusted.
 pub const LEAST_EFFECTIVE: f64 = 0.1;
@@ -18,7 +18,7 @@ const MEAN_WEIGHT_ERRORS: f64 = 4.0;
 const FEWEST: f64 = 20.0;
 
 /// A probability by reweighting.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reweighted {
     /// The probability, if it is to be trusted.
     pub probability: Estimate,

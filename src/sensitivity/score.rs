@@ -8,13 +8,13 @@
 use crate::error::{Error, Result};
 use crate::numerics::interval::{Earned, Estimate, Interval};
 use crate::numerics::special::normal;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// With fewer breaches, or fewer clean samples, than this the normal approximation is not earned.
 pub(super) const FEWEST_BREACHES: u64 = 10;
 
 /// The derivative of one breach probability with respect to one parameter.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ProbabilityDerivative {
     /// dP/dθ, in one over the parameter's unit, with standard error and interval; the interval holds
     /// whatever the faulted samples would have been.

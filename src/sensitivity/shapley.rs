@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::numerics::columns::Columns;
 use crate::numerics::interval::{Earned, Estimate};
 use nalgebra::DMatrix;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// With the variance made by fewer walks than this, batches do not show its error: of lognormal outcomes an
 /// interval for 95 % was measured to hold 63 to 93 % below, 93 to 96 % above.
@@ -32,7 +32,7 @@ pub struct Walks {
 }
 
 /// The Shapley effects of one outcome.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ShapleyEffects {
     /// Variance of the outcome by the walks.
     pub variance: Option<f64>,

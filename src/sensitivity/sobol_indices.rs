@@ -17,10 +17,10 @@ use super::pick_freeze::Plan;
 use super::rare_events::{EventCounts, FEWEST, is_indicator};
 use crate::error::{Error, Result};
 use crate::numerics::interval::{Earned, Estimate, Interval};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The indices of one outcome.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SobolIndices {
     /// Mean of the outcome over blocks A and B; `None` if no row is known.
     pub mean: Option<f64>,
@@ -33,7 +33,7 @@ pub struct SobolIndices {
 }
 
 /// First-order and total index of one factor.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FactorIndices {
     /// Share of the variance that the factor explains by itself (Martinez).
     pub first: Estimate,
@@ -50,7 +50,7 @@ pub struct FactorIndices {
 }
 
 /// The same indices by other estimators; `None` where not defined.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CrossChecks {
     /// First-order index by Janon's estimator.
     pub first_janon: Option<f64>,
@@ -61,7 +61,7 @@ pub struct CrossChecks {
 }
 
 /// Second-order index of one pair of factors.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PairIndices {
     /// The plan's numbers of the two factors.
     #[serde(skip)]

@@ -1,6 +1,6 @@
 //! Digests: of the resolved study, which fixes every number of a run, and of its raw texts.
 
-use super::{Input, LimitKind, RequirementOf, Study, TighteningCost};
+use super::{Input, LimitKind, RareMethod, RequirementOf, Study, TighteningCost};
 use crate::reliability::adaptive::Until;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -90,11 +90,10 @@ impl Study {
         lines.extend(
             plan.pairs.iter().map(|(one, other)| format!("sensitivity pair {one} {other}")),
         );
-        let methods = self.reliability.methods.as_ref();
-        lines.push(format!(
-            "reliability {}",
-            methods.map_or("default".to_owned(), |methods| methods.join(","))
-        ));
+        let methods = self.reliability.methods.as_deref();
+        let names = |methods: &[RareMethod]| methods.iter().map(|method| method.name()).collect();
+        let names: Vec<&str> = methods.map_or(vec!["default"], names);
+        lines.push(format!("reliability {}", names.join(",")));
         lines.push(format!("trade samples={}", self.trade.samples));
         let plan = &self.tighten;
         let target = plan.target.map_or("requirement".to_owned(), |target| format!("{target:e}"));

@@ -64,6 +64,32 @@ impl Study {
     }
 }
 
+impl Study {
+    /// Makes a study of its text and that of the one card that it names. No file is read.
+    ///
+    /// # Errors
+    /// A [`crate::error::Diagnostic`] for every mistake in either text.
+    pub fn from_texts(study: &str, card: &str) -> Result<Study> {
+        let study = NamedText { origin: "study".to_owned(), text: study.to_owned() };
+        assemble(&study, &[], &mut OneCard { text: card })
+    }
+}
+
+/// A card that is a text already.
+struct OneCard<'a> {
+    text: &'a str,
+}
+
+impl Files for OneCard<'_> {
+    fn card(&mut self, name: &str, _: bool) -> std::result::Result<NamedText, String> {
+        Ok(NamedText { origin: name.to_owned(), text: self.text.to_owned() })
+    }
+
+    fn sample(&mut self, _: &str, _: &str) -> std::result::Result<SampleFile, String> {
+        Err("a study that is made of texts reads no file".to_owned())
+    }
+}
+
 /// The file system, seen from a study file.
 struct Disk {
     directory: PathBuf,

@@ -368,11 +368,65 @@ pub struct SensitivityPlan {
     pub pairs: Vec<(String, String)>,
 }
 
+/// A method that estimates small probabilities.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RareMethod {
+    /// The samples themselves.
+    Crude,
+    /// The first-order reliability method.
+    Form,
+    /// The second-order one.
+    Sorm,
+    /// Importance sampling around design points.
+    ImportanceSampling,
+    /// Subset simulation.
+    SubsetSimulation,
+    /// Line sampling.
+    LineSampling,
+    /// Directional sampling.
+    DirectionalSampling,
+    /// Cross-entropy importance sampling.
+    CrossEntropy,
+}
+
+impl RareMethod {
+    /// All, in the order in which they are listed.
+    pub const ALL: [RareMethod; 8] = [
+        RareMethod::Crude,
+        RareMethod::Form,
+        RareMethod::Sorm,
+        RareMethod::ImportanceSampling,
+        RareMethod::SubsetSimulation,
+        RareMethod::LineSampling,
+        RareMethod::DirectionalSampling,
+        RareMethod::CrossEntropy,
+    ];
+
+    /// The name in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            RareMethod::Crude => "crude",
+            RareMethod::Form => "form",
+            RareMethod::Sorm => "sorm",
+            RareMethod::ImportanceSampling => "importance-sampling",
+            RareMethod::SubsetSimulation => "subset-simulation",
+            RareMethod::LineSampling => "line-sampling",
+            RareMethod::DirectionalSampling => "directional-sampling",
+            RareMethod::CrossEntropy => "cross-entropy",
+        }
+    }
+
+    /// The member of a name.
+    pub fn from_name(name: &str) -> Option<RareMethod> {
+        Self::ALL.into_iter().find(|method| method.name() == name)
+    }
+}
+
 /// How small probabilities are estimated.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ReliabilityPlan {
-    /// Names of the methods to run, besides the samples themselves; `None` leaves the choice to the program.
-    pub methods: Option<Vec<String>>,
+    /// The methods to run, besides the samples themselves; `None` leaves the choice to the program.
+    pub methods: Option<Vec<RareMethod>>,
 }
 
 /// A design value that the study states.

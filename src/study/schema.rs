@@ -5,13 +5,13 @@
 
 use super::laws::{Kind, LAWS, LawInfo, TERMS, keys_of};
 use super::vocabulary::{
-    CARD, EPISTEMIC, GRADE, INPUT, KeyInfo, LIMIT, METHODS, NUMERICS, RELIABILITY, REQUIREMENT,
-    SAMPLING, SENSITIVITY, STUDY, TIGHTEN, TRADE, UNTIL,
+    CARD, EPISTEMIC, GRADE, INPUT, KeyInfo, LIMIT, NUMERICS, RELIABILITY, REQUIREMENT, SAMPLING,
+    SENSITIVITY, STUDY, TIGHTEN, TRADE, UNTIL,
 };
 mod statements;
 
 use super::read::SHARES;
-use super::{Known, LimitKind, Nature, RequirementOf};
+use super::{Known, LimitKind, Nature, RareMethod, RequirementOf};
 use crate::descent::vector::TOLERANCES;
 use crate::descent::{Model, OutcomeQuantity};
 use crate::physics::parameters::{PARAMETERS, Parameter, ParameterInfo};
@@ -62,7 +62,8 @@ pub fn study() -> Value {
         },
         &[],
     );
-    let methods = json!({ "type": "array", "items": { "enum": METHODS }, "uniqueItems": true });
+    let names = RareMethod::ALL.map(RareMethod::name);
+    let methods = json!({ "type": "array", "items": { "enum": names }, "uniqueItems": true });
     let reliability = table(RELIABILITY, |_| methods.clone(), &[]);
     let trade = table(TRADE, |_| json!({ "anyOf": [{ "const": 0 }, whole(100)] }), &[]);
     let tighten = table(

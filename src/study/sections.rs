@@ -7,8 +7,8 @@ use super::until;
 use super::values::{check_surface, parameter_path, possible_range, written};
 use super::vocabulary as keys;
 use super::{
-    Limit, LimitKind, Numerics, ReliabilityPlan, Requirement, RequirementOf, SamplingPlan,
-    SensitivityPlan, Stated,
+    Limit, LimitKind, Numerics, RareMethod, ReliabilityPlan, Requirement, RequirementOf,
+    SamplingPlan, SensitivityPlan, Stated,
 };
 use crate::descent::outcome::TIME_LIMIT_S;
 use crate::descent::vector::{TOLERANCES, default_tolerance};
@@ -396,10 +396,10 @@ pub(super) fn reliability(node: Option<&Node>) -> Result<ReliabilityPlan> {
         let problem = format!("this is {}", node.value.described());
         return Err(node.place.error(problem, "expected a list of methods, such as [\"form\"]"));
     };
-    let mut methods: Vec<String> = Vec::new();
+    let names = RareMethod::ALL.map(RareMethod::name);
+    let mut methods = Vec::new();
     for item in items {
-        let known = |name: &str| keys::METHODS.iter().find(|&&known| known == name).copied();
-        let method = read::choice(item, "method", keys::METHODS, known)?.to_owned();
+        let method = read::choice(item, "method", &names, RareMethod::from_name)?;
         if methods.contains(&method) {
             return Err(item
                 .place

@@ -175,15 +175,3 @@ pub(super) static CORRELATION: &[KeyInfo] = &[
     key("kendall", "Kendall's rank correlation"),
     key("source", "where the coefficient comes from"),
 ];
-
-/// Names of the methods that estimate small probabilities.
-pub(super) static METHODS: &[&str] = &[
-    "crude",
-    "form",
-    "sorm",
-    "importance-sampling",
-    "subset-simulation",
-    "line-sampling",
-    "directional-sampling",
-    "cross-entropy",
-];

@@ -4,7 +4,7 @@ use crate::sample::{independent, replicated};
 use reeldown::render::{figures, html};
 use std::collections::BTreeSet;
 
-fn page(sample: &crate::sample::Sample) -> String {
+fn page(sample: &reeldown::analysis::Results) -> String {
     html(&sample.findings, &figures(&sample.findings)).unwrap()
 }
 

@@ -5,5 +5,6 @@ mod html;
 mod limits;
 mod measures;
 mod numbers;
+mod read_back;
 mod sample;
 mod sweep;

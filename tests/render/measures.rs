@@ -21,7 +21,8 @@ const NEVER_NEGATIVE: [&str; 7] = [
 #[test]
 fn property_every_index_has_an_interval_or_says_why_and_a_negative_one_is_explained() {
     let measures = &independent().findings.measures;
-    let names: Vec<&str> = measures.outputs.iter().map(|output| output.name.as_str()).collect();
+    let names: Vec<String> =
+        measures.outputs.iter().map(|output| output.name.to_string()).collect();
     assert_eq!(
         names,
         [

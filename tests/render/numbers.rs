@@ -90,7 +90,7 @@ fn property_the_scatter_shows_the_samples_that_breached() {
     let shown = sample.findings.figures.interaction.as_ref().unwrap();
     let limits = sample.findings.margins.len();
     let breached: Vec<bool> = (0..shown.breached.len())
-        .map(|k| (0..limits).any(|i| sample.record.margins(i)[k] < 0.0))
+        .map(|k| (0..limits).any(|i| sample.sampling.record.margins(i)[k] < 0.0))
         .collect();
     assert_eq!(shown.added, 0);
     assert_eq!(shown.breached, breached);

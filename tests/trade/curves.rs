@@ -1,8 +1,9 @@
 //! The trade of the HABE study against independent reruns.
 
+use reeldown::analysis::Sampling;
 use reeldown::campaign::common_numbers::{Breaches, Change, CommonSample, Event};
 use reeldown::campaign::trade::{design_value_anew, run_trade, trade_factors};
-use reeldown::campaign::{self, Progress, Record};
+use reeldown::campaign::{Progress, Record};
 use reeldown::streams::Purpose;
 use reeldown::study::{Override, Study};
 
@@ -18,15 +19,7 @@ pub fn study(set: &[&str]) -> Study {
 }
 
 pub fn recorded(study: &Study) -> Record {
-    let sampler = campaign::sampler(study).expect("a sampler");
-    let mut record = Record::new(study, sampler.replicates()).expect("a record");
-    let progress = Progress::default();
-    let mut sink = |table: reeldown::outcomes::OutcomeTable| {
-        record.absorb(&table);
-        Ok(())
-    };
-    campaign::run(study, 0..study.sampling.samples, &progress, &mut sink).expect("a run");
-    record
+    Sampling::of(study, &Progress::default()).expect("a run").record
 }
 
 fn share(breaches: &Breaches) -> f64 {
@@ -127,13 +120,7 @@ fn property_the_size_of_a_trade_does_not_follow_where_an_adaptive_run_stopped() 
     let until = "sampling.until={relative_error=0.2, budget=20000}";
     let adaptive = study(&[until, "trade.samples=8000"]);
     let progress = Progress::default();
-    let mut looks = campaign::Looks::new(&adaptive).expect("looks");
-    let mut record = Record::new(&adaptive, 1).expect("a record");
-    let mut sink = |table: reeldown::outcomes::OutcomeTable| {
-        record.absorb(&table);
-        Ok(())
-    };
-    campaign::run_until(&adaptive, &mut looks, &progress, &mut sink).expect("a run");
+    let record = recorded(&adaptive);
     let stopped = record.counts().samples();
     assert!(stopped < 8000, "stopped at {stopped}: it does not stop below the trade's sample");
     let trade = run_trade(&adaptive, &record, &progress).expect("a trade").expect("a trade");

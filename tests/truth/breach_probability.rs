@@ -1,7 +1,8 @@
 //! The default study's breach probabilities against numpy's: another generator, another integrator,
 //! another implementation of the laws (references/breach_probability.py).
 
-use reeldown::campaign::{self, Progress, Record};
+use reeldown::analysis::Sampling;
+use reeldown::campaign::Progress;
 use reeldown::descent::OutcomeQuantity;
 use reeldown::study::{Override, Study};
 use serde_json::Value;
@@ -15,13 +16,7 @@ fn reference_numpy_monte_carlo_of_the_quasi_steady_model() {
     let overrides: Vec<Override> =
         set.iter().map(|s| Override::parse("--set", s).unwrap()).collect();
     let study = Study::load(None, &overrides).unwrap();
-    let mut record = Record::new(&study, 1).unwrap();
-    let samples = study.sampling.samples;
-    let mut sink = |table| {
-        record.absorb(&table);
-        Ok(())
-    };
-    campaign::run(&study, 0..samples, &Progress::default(), &mut sink).unwrap();
+    let Sampling { record, samples, .. } = Sampling::of(&study, &Progress::default()).unwrap();
 
     // Four standard errors of the difference of two independent estimates: one chance in 16 000 each.
     let (n, m) = (samples as f64, number("samples"));

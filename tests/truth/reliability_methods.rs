@@ -48,7 +48,7 @@ impl LimitState for AsOneMargin<'_> {
 
 fn first_order(id: &str) -> f64 {
     let benchmark = named(id);
-    form(&benchmark.limits, 0, &SearchOptions::default()).unwrap().0.probability.unwrap()
+    form(&benchmark.limits, 0, &SearchOptions::seeded(0)).unwrap().0.probability.unwrap()
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn analytic_form_of_a_plane_is_exact() {
     }
     let benchmark = named("RP107");
     let found =
-        design_points(&benchmark.limits, Event::Limit(0), &SearchOptions::default()).unwrap();
+        design_points(&benchmark.limits, Event::Limit(0), &SearchOptions::seeded(0)).unwrap();
     assert_eq!(found.points.len(), 1);
     assert!(found.points[0].importance.iter().all(|a2| (a2 - 0.1).abs() < 1e-9));
 }
@@ -85,7 +85,7 @@ fn published_trap_form_is_far_too_high_on_the_damped_oscillator() {
 fn published_trap_form_is_low_on_the_four_branches() {
     // 2.33e-4, ten times low, is the plane of the farther branch, where a single search can end.
     let benchmark = named("FOURBRANCH");
-    let found = design_points(&benchmark.limits, Event::Any, &SearchOptions::default()).unwrap();
+    let found = design_points(&benchmark.limits, Event::Any, &SearchOptions::seeded(0)).unwrap();
     let far = found.nearest(2).unwrap().reliability_index;
     assert!((far - 3.5).abs() < 1e-9);
     assert!((normal::survival(far) - 2.33e-4).abs() < 5e-7);
@@ -104,7 +104,7 @@ fn published_trap_form_says_nearly_certain_on_the_shell() {
 #[test]
 fn property_an_unconverged_search_reports_no_number() {
     let flat = Function { dimension: 3, limits: 1, margins: |_, margins| margins.push(1.0) };
-    let (estimate, found) = form(&flat, 0, &SearchOptions::default()).unwrap();
+    let (estimate, found) = form(&flat, 0, &SearchOptions::seeded(0)).unwrap();
     assert_eq!(estimate.probability, None);
     assert!(found.unconverged.iter().all(|(_, why)| *why == Unconverged::Flat));
     let jump = Function {
@@ -112,9 +112,9 @@ fn property_an_unconverged_search_reports_no_number() {
         limits: 1,
         margins: |z, margins| margins.push(if z[0] > 2.0 { -1.0 } else { 1.0 + 0.01 * z[1] }),
     };
-    assert_eq!(form(&jump, 0, &SearchOptions::default()).unwrap().0.probability, None);
+    assert_eq!(form(&jump, 0, &SearchOptions::seeded(0)).unwrap().0.probability, None);
     let faulty = Function { dimension: 2, limits: 1, margins: |_, margins| margins.push(f64::NAN) };
-    let (estimate, found) = form(&faulty, 0, &SearchOptions::default()).unwrap();
+    let (estimate, found) = form(&faulty, 0, &SearchOptions::seeded(0)).unwrap();
     assert_eq!(estimate.probability, None);
     assert!(estimate.faults > 0);
     assert!(found.unconverged.iter().all(|(_, why)| *why == Unconverged::Fault));
@@ -125,11 +125,11 @@ fn analytic_system_form_of_two_planes() {
     // RP33 is two planes at distance 3 with α·α = 1/√3: the union is exact, up to quadrature and search.
     let benchmark = named("RP33");
     let (estimate, _) =
-        system_form(&benchmark.limits, Event::Any, &SearchOptions::default()).unwrap();
+        system_form(&benchmark.limits, Event::Any, &SearchOptions::seeded(0)).unwrap();
     let ratio = estimate.probability.unwrap() / benchmark.probability;
     assert!((ratio - 1.0).abs() < 1e-7, "{ratio}");
     let (both, _) =
-        system_form(&benchmark.limits, Event::Both(0, 1), &SearchOptions::default()).unwrap();
+        system_form(&benchmark.limits, Event::Both(0, 1), &SearchOptions::seeded(0)).unwrap();
     let exact = 2.0 * normal::survival(3.0) - benchmark.probability;
     // The joint design point is converged to 1e-5 in distance only.
     assert!((both.probability.unwrap() / exact - 1.0).abs() < 1e-3);
@@ -298,11 +298,11 @@ fn published_trap_subset_simulation_follows_the_falling_margin_of_rp110() {
     let benchmark = named("RP110");
     let one = AsOneMargin(&benchmark);
     let event = Event::Limit(0);
-    let options = SubsetOptions { samples_per_level: 200, ..SubsetOptions::default() };
+    let options = SubsetOptions { samples_per_level: 200, ..SubsetOptions::seeded(0) };
     let subset = subset_simulation(&one, event, &options).unwrap();
     assert!(subset.interval.interval().unwrap().upper < 0.1 * benchmark.probability);
     // The agreement check sees it.
-    let (importance, _) = importance_sampling(&one, event, &ImportanceOptions::default()).unwrap();
+    let (importance, _) = importance_sampling(&one, event, &ImportanceOptions::seeded(0)).unwrap();
     assert!(importance.interval.interval().unwrap().contains(benchmark.probability));
     let check = agreement(&[importance, subset], 0.01).unwrap();
     assert_eq!(check.agrees, Some(false));
@@ -351,10 +351,10 @@ fn property_same_seed_same_bits_however_batches_are_cut() {
     let benchmark = named("RP33");
     let (whole, pieces) = (&benchmark.limits, &InPieces(&benchmark.limits));
     let event = benchmark.event;
-    let options = SubsetOptions { samples_per_level: 100, seed: 9, ..SubsetOptions::default() };
+    let options = SubsetOptions { samples_per_level: 100, seed: 9, ..SubsetOptions::seeded(0) };
     let subset = |state: &dyn LimitState| subset_simulation(state, event, &options).unwrap();
     assert_eq!(subset(whole), subset(pieces));
-    let options = ImportanceOptions { samples: 1000, seed: 9, ..ImportanceOptions::default() };
+    let options = ImportanceOptions { samples: 1000, seed: 9, ..ImportanceOptions::seeded(0) };
     let importance = |state: &dyn LimitState| importance_sampling(state, event, &options).unwrap();
     assert_eq!(importance(whole), importance(pieces));
     assert_ne!(
@@ -364,7 +364,7 @@ fn property_same_seed_same_bits_however_batches_are_cut() {
 }
 
 fn options_of(seed: u64) -> SubsetOptions {
-    SubsetOptions { seed, ..SubsetOptions::default() }
+    SubsetOptions { seed, ..SubsetOptions::seeded(0) }
 }
 
 /// A plane at distance 3 whose evaluation fails beyond it where x2 > 1.
@@ -395,12 +395,12 @@ fn analytic_faults_bound_the_probability_from_both_sides() {
     let event = Event::Limit(0);
     let state = &PartlyFaulty;
     let estimates = [
-        importance_sampling(state, event, &ImportanceOptions::default()).unwrap().0,
-        subset_simulation(state, event, &SubsetOptions::default()).unwrap(),
-        line_sampling(state, event, &LineOptions::default()).unwrap(),
-        directional_sampling(state, event, &DirectionalOptions::default()).unwrap(),
-        cross_entropy(state, event, &CrossEntropyOptions::default()).unwrap(),
-        crude_monte_carlo(state, event, &CrudeOptions::default()).unwrap(),
+        importance_sampling(state, event, &ImportanceOptions::seeded(0)).unwrap().0,
+        subset_simulation(state, event, &SubsetOptions::seeded(0)).unwrap(),
+        line_sampling(state, event, &LineOptions::seeded(0)).unwrap(),
+        directional_sampling(state, event, &DirectionalOptions::seeded(0)).unwrap(),
+        cross_entropy(state, event, &CrossEntropyOptions::seeded(0)).unwrap(),
+        crude_monte_carlo(state, event, &CrudeOptions::seeded(0)).unwrap(),
     ];
     for estimate in estimates {
         assert!(estimate.faults > 0);

@@ -42,17 +42,16 @@ fn events() -> [(Event, f64); 5] {
 
 fn answers(event: Event, seed: u64) -> Vec<Estimate> {
     let state = &planes();
-    let search = SearchOptions { seed, ..SearchOptions::default() };
-    let importance = ImportanceOptions { seed, search: search.clone(), ..Default::default() };
-    let line = LineOptions { seed, search: search.clone(), ..Default::default() };
+    let search = SearchOptions::seeded(seed);
+    let importance = ImportanceOptions::seeded(seed);
+    let line = LineOptions::seeded(seed);
     vec![
-        crude_monte_carlo(state, event, &CrudeOptions { seed, ..Default::default() }).unwrap(),
+        crude_monte_carlo(state, event, &CrudeOptions::seeded(seed)).unwrap(),
         importance_sampling(state, event, &importance).unwrap().0,
-        subset_simulation(state, event, &SubsetOptions { seed, ..Default::default() }).unwrap(),
+        subset_simulation(state, event, &SubsetOptions::seeded(seed)).unwrap(),
         line_sampling(state, event, &line).unwrap(),
-        directional_sampling(state, event, &DirectionalOptions { seed, ..Default::default() })
-            .unwrap(),
-        cross_entropy(state, event, &CrossEntropyOptions { seed, ..Default::default() }).unwrap(),
+        directional_sampling(state, event, &DirectionalOptions::seeded(seed)).unwrap(),
+        cross_entropy(state, event, &CrossEntropyOptions::seeded(seed)).unwrap(),
         system_form(state, event, &search).unwrap().0,
     ]
 }

@@ -115,8 +115,9 @@ pub struct Options {
     pub plan: Plan,
 }
 
-impl Default for Options {
-    fn default() -> Self {
+impl Options {
+    /// What is usual, with the seed of every stream.
+    pub fn seeded(seed: u64) -> Self {
         Options {
             sensor_sd: Vec::new(),
             gain_sd: Vec::new(),
@@ -124,7 +125,7 @@ impl Default for Options {
             discrepancy: Some(0.01),
             degrees_of_freedom: None,
             drive: None,
-            plan: Plan::default(),
+            plan: Plan::seeded(seed),
         }
     }
 }

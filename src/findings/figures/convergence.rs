@@ -6,7 +6,7 @@ use crate::findings::{CONFIDENCE, sequence};
 use crate::reliability::probability::Proportion;
 use crate::reliability::replicates::from_replicate_counts;
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Checkpoints a decade of samples.
 const PER_DECADE: i32 = 24;
@@ -14,7 +14,7 @@ const PER_DECADE: i32 = 24;
 const FIRST: u64 = 100;
 
 /// The running estimate of the probability of any breach.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Convergence {
     /// The largest probability that the requirement allows.
     pub allowed: Option<f64>,
@@ -29,7 +29,7 @@ pub struct Convergence {
 }
 
 /// The estimate after a number of samples.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
     /// The number of samples.
     pub samples: u64,

@@ -8,9 +8,10 @@ use crate::campaign::{Record, in_parallel};
 use crate::error::Result;
 use crate::findings::CONFIDENCE;
 use crate::numerics::elementary::ln;
+use crate::numerics::words::{self, Word};
 use crate::reliability::probability::Proportion;
 use crate::study::{LimitKind, Study};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Bins over the range that is drawn.
 const BINS: f64 = 48.0;
@@ -20,12 +21,13 @@ const STATIONS_PER_BIN: i64 = 2;
 const TAIL: f64 = 1.6;
 
 /// How an outcome with a limit is distributed, SI.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Distribution {
     /// Name of the limit.
     pub limit: String,
     /// Name of the outcome.
-    pub outcome: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub outcome: Word,
     /// The limit as written.
     pub limit_text: String,
     /// The limit.
@@ -48,11 +50,12 @@ pub struct Distribution {
     /// not known.
     pub simultaneous_half_width: Option<f64>,
     /// Why the exceedance has no intervals, if it has none.
-    pub why_no_interval: Option<&'static str>,
+    #[serde(deserialize_with = "words::maybe")]
+    pub why_no_interval: Option<Word>,
 }
 
 /// The probability of an outcome beyond a value.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Exceedance {
     /// The value.
     pub value: f64,

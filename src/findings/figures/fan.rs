@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::numerics::columns::Columns;
 use crate::physics::{Coefficients, Design, Parameter};
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Trajectories behind the bands: the first samples of the run.
 const TRAJECTORIES: u64 = 300;
@@ -20,7 +20,7 @@ const LONGEST_STEP_S: f64 = 2.0;
 const LEVELS: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 
 /// Quantile bands of trajectories, SI.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fan {
     /// Trajectories that could be computed.
     pub trajectories: usize,
@@ -35,7 +35,7 @@ pub struct Fan {
 }
 
 /// Quantiles of one reading over the run.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FanBand {
     /// Time (s) or line paid out (m).
     pub abscissa: Vec<f64>,

@@ -4,9 +4,10 @@ use crate::campaign::common_numbers::CommonSample;
 use crate::campaign::{self, Record};
 use crate::error::Result;
 use crate::findings::drivers::{DriverOutput, DriversFinding};
+use crate::findings::named::Output;
 use crate::sensitivity::pick_freeze::Factor;
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Samples shown: the first of the run.
 const SHOWN: u64 = 2000;
@@ -14,7 +15,7 @@ const SHOWN: u64 = 2000;
 const WANTED: usize = 100;
 
 /// A thinned sample in the plane of two inputs.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Interaction {
     /// The output whose drivers were ranked, in words.
     pub output: String,
@@ -32,7 +33,7 @@ pub struct Interaction {
 }
 
 /// Which samples are shown.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Samples {
     /// All of the first so many that could be computed.
     pub first: usize,
@@ -43,7 +44,7 @@ pub struct Samples {
 }
 
 /// One input of each sample shown.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct InteractionInput {
     /// Path, or name of the statement whose inputs are averaged.
     pub path: String,
@@ -93,7 +94,7 @@ pub(super) fn interaction(
     let sample = CommonSample::of_rows(study, &chosen)?;
     let draws = sample.inputs();
     let input = |name: &str, columns: &[usize]| InteractionInput {
-        path: name.trim_end_matches(" (all)").to_owned(),
+        path: name.to_owned(),
         inputs: columns.len(),
         values: (0..chosen.len())
             .map(|k| columns.iter().map(|&j| draws.get(k, j)).sum::<f64>() / columns.len() as f64)
@@ -115,16 +116,16 @@ fn strongest<'a>(
     drivers: &'a DriversFinding,
     factors: &[Factor],
 ) -> Option<(&'a DriverOutput, [&'a str; 2])> {
-    let limited = study.limits.iter().map(|limit| limit.outcome.name());
-    std::iter::once("breach.any").chain(limited).find_map(|name| {
+    let limited = study.limits.iter().map(|limit| Output::Outcome(limit.outcome));
+    std::iter::once(Output::AnyBreach).chain(limited).find_map(|name| {
         let ranks = |o: &&DriverOutput| o.name == name && o.too_few.is_none();
         let output = drivers.outputs.iter().find(ranks)?;
         let mut factors: Vec<(f64, &str)> = output
             .factors
             .iter()
             .filter(|factor| !factor.grouped)
-            .filter(|factor| factors.iter().any(|shown| shown.name == factor.name))
-            .filter_map(|factor| Some((factor.indices.total.value?, factor.name.as_str())))
+            .filter(|factor| factors.iter().any(|shown| shown.name == factor.name.name))
+            .filter_map(|factor| Some((factor.indices.total.value?, factor.name.name.as_str())))
             .collect();
         factors.sort_by(|a, b| b.0.total_cmp(&a.0));
         match factors.as_slice() {

@@ -11,7 +11,7 @@ use super::drivers::DriversFinding;
 use crate::campaign::Record;
 use crate::error::Result;
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 pub use convergence::{Checkpoint, Convergence};
 pub use distribution::{Distribution, Exceedance};
@@ -21,7 +21,7 @@ pub(crate) use paper::held_temperature;
 pub use paper::{ConstantTemperature, PaperRuns, paper_runs};
 
 /// The numbers behind every figure of a run.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FigureData {
     /// How each limited outcome is distributed, one entry a limit.
     pub distributions: Vec<Distribution>,
@@ -37,7 +37,7 @@ pub struct FigureData {
 ///
 /// # Errors
 /// What the study's sampler refuses.
-pub(super) fn figures(
+pub(crate) fn figures(
     study: &Study,
     record: &Record,
     drivers: &DriversFinding,

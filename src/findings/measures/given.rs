@@ -8,6 +8,7 @@ use crate::campaign::in_parallel;
 use crate::descent::OutcomeQuantity;
 use crate::error::Result;
 use crate::findings::CONFIDENCE;
+use crate::findings::named::Output;
 use crate::findings::probabilities::breach_of;
 use crate::sensitivity::borgonovo::borgonovo_delta;
 use crate::sensitivity::given_data::GivenData;
@@ -43,7 +44,7 @@ enum Method {
 
 /// What is looked at.
 #[derive(Debug, Clone, Copy)]
-enum Output {
+enum Asked {
     Outcome(OutcomeQuantity),
     Breach(usize, Event),
 }
@@ -53,12 +54,12 @@ pub(super) fn outputs(study: &Study, sample: &GivenSample) -> Result<Vec<Measure
     let limited = |q: &OutcomeQuantity| {
         study.limits.is_empty() || study.limits.iter().any(|limit| limit.outcome == *q)
     };
-    let outcomes = OutcomeQuantity::ALL.into_iter().filter(limited).map(Output::Outcome);
+    let outcomes = OutcomeQuantity::ALL.into_iter().filter(limited).map(Asked::Outcome);
     let events = sample.breaching.iter().enumerate().map(|(i, _)| match i {
-        i if i < study.limits.len() => Output::Breach(i, Event::Limit(i)),
-        i => Output::Breach(i, Event::Any),
+        i if i < study.limits.len() => Asked::Breach(i, Event::Limit(i)),
+        i => Asked::Breach(i, Event::Any),
     });
-    let outputs: Vec<Output> = outcomes.chain(events).collect();
+    let outputs: Vec<Asked> = outcomes.chain(events).collect();
     let tasks: Vec<(usize, Method)> = outputs
         .iter()
         .enumerate()
@@ -78,11 +79,11 @@ pub(super) fn outputs(study: &Study, sample: &GivenSample) -> Result<Vec<Measure
     Ok(all)
 }
 
-impl Output {
+impl Asked {
     fn methods(self) -> &'static [Method] {
         match self {
             // The dear ones first, so that the last thread is not left with one.
-            Output::Outcome(_) => &[
+            Asked::Outcome(_) => &[
                 Method::Delta,
                 Method::Dependence,
                 Method::Pawn,
@@ -90,19 +91,19 @@ impl Output {
                 Method::Regression,
                 Method::FirstOrder,
             ],
-            Output::Breach(..) => &[Method::Dependence, Method::Among, Method::FirstOrder],
+            Asked::Breach(..) => &[Method::Dependence, Method::Among, Method::FirstOrder],
         }
     }
 
     fn named(self, study: &Study) -> MeasuredOutput {
         let (name, title, breach) = match self {
-            Output::Outcome(q) => (q.name().to_owned(), q.title().to_owned(), false),
-            Output::Breach(_, Event::Limit(i)) => {
+            Asked::Outcome(q) => (Output::Outcome(q), q.title().to_owned(), false),
+            Asked::Breach(_, Event::Limit(i)) => {
                 let limit = &study.limits[i];
-                (format!("breach.{}", limit.name()), breach_of(limit), true)
+                (Output::breach_of(limit), breach_of(limit), true)
             }
-            Output::Breach(_, Event::Any) => {
-                ("breach.any".into(), "breach of any limit".into(), true)
+            Asked::Breach(_, Event::Any) => {
+                (Output::AnyBreach, "breach of any limit".to_owned(), true)
             }
         };
         MeasuredOutput { name, title, breach, indices: Vec::new() }
@@ -110,8 +111,8 @@ impl Output {
 
     fn values(self, sample: &GivenSample) -> Vec<f64> {
         match self {
-            Output::Outcome(quantity) => sample.outcomes.column(quantity as usize).to_vec(),
-            Output::Breach(_, event) => sample.breaches.indicator(event),
+            Asked::Outcome(quantity) => sample.outcomes.column(quantity as usize).to_vec(),
+            Asked::Breach(_, event) => sample.breaches.indicator(event),
         }
     }
 
@@ -123,7 +124,7 @@ impl Output {
     ) -> Result<Vec<IndexColumn>> {
         let values = self.values(sample);
         let seed = study.sampling.seed;
-        let breach = matches!(self, Output::Breach(..));
+        let breach = matches!(self, Asked::Breach(..));
         Ok(match method {
             Method::FirstOrder => {
                 let data = first_rows(&sample.scores, &values, values.len())?;
@@ -176,7 +177,7 @@ impl Output {
 
     /// The conditional sensitivities: of and among the samples that breach.
     fn among(self, sample: &GivenSample, seed: u64) -> Result<Vec<IndexColumn>> {
-        let Output::Breach(event, _) = self else { return Ok(Vec::new()) };
+        let Asked::Breach(event, _) = self else { return Ok(Vec::new()) };
         let Some(Breaching { scores, excess, .. }) = sample.breaching.get(event) else {
             return Ok(Vec::new());
         };

@@ -1,13 +1,15 @@
 //! One index of every factor, side by side.
 
+use crate::campaign::Found;
 use crate::campaign::given_sample::GivenSample;
 use crate::campaign::screening::{ScreeningOutcomes, TRAJECTORIES};
 use crate::descent::OutcomeQuantity;
 use crate::error::Result;
 use crate::findings::CONFIDENCE;
-use crate::numerics::interval::{Earned, Estimate};
+use crate::numerics::interval::{Earned, Estimate, Interval};
+use crate::numerics::words::{self, Word};
 use serde::ser::SerializeStruct;
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Below this an index is not told from none.
 const NEVER_NEGATIVE: &str = "the index itself is never negative: its estimate is, because ";
@@ -145,14 +147,76 @@ impl Serialize for IndexColumn {
     }
 }
 
+/// What is written of a column.
+#[derive(Deserialize)]
+struct Written {
+    #[serde(deserialize_with = "words::one")]
+    index: Word,
+    #[serde(deserialize_with = "words::one")]
+    method: Word,
+    samples: usize,
+    #[serde(default)]
+    left_out: usize,
+    value: Vec<Option<f64>>,
+    #[serde(default)]
+    lower: Vec<Option<f64>>,
+    #[serde(default)]
+    upper: Vec<Option<f64>>,
+    #[serde(default)]
+    confidence: f64,
+    #[serde(default, deserialize_with = "words::one")]
+    interval: Word,
+    #[serde(default)]
+    p_value: Vec<Option<f64>>,
+    notes: Vec<WrittenNote>,
+}
+
+#[derive(Deserialize)]
+struct WrittenNote {
+    note: String,
+    factors: Vec<usize>,
+}
+
+impl<'de> Deserialize<'de> for IndexColumn {
+    /// Standard errors are not written.
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        let written = Written::deserialize(deserializer)?;
+        let note = |factor: usize| {
+            let of = |note: &&WrittenNote| note.factors.contains(&factor);
+            written.notes.iter().find(of).map(|note| note.note.clone())
+        };
+        let end = |ends: &[Option<f64>], factor: usize| ends.get(factor).copied().flatten();
+        let (confidence, method) = (written.confidence, written.interval);
+        let (mut estimates, mut explanations) = (Vec::new(), Vec::new());
+        for (factor, &value) in written.value.iter().enumerate() {
+            let ends = end(&written.lower, factor).zip(end(&written.upper, factor));
+            let interval = match ends {
+                Some((lower, upper)) => Interval { lower, upper, confidence, method }.into(),
+                None => Earned::none(note(factor).unwrap_or_default()),
+            };
+            explanations.push(note(factor).filter(|_| ends.is_some()));
+            estimates.push(Estimate { value, standard_error: None, interval });
+        }
+        Ok(IndexColumn {
+            index: written.index,
+            method: written.method,
+            samples: written.samples,
+            left_out: written.left_out,
+            estimates,
+            p_values: written.p_value,
+            explanations,
+        })
+    }
+}
+
 /// Mean magnitude of the elementary effects of every factor.
 pub(super) fn screened(
     sample: &GivenSample,
-    screening: &std::result::Result<ScreeningOutcomes, String>,
+    screening: &Found<ScreeningOutcomes>,
     quantity: OutcomeQuantity,
 ) -> Result<IndexColumn> {
     let effects = match screening {
-        Err(why) => Err(why.clone()),
+        Err(why) => Err(why.to_string()),
         Ok(found) => {
             let outcomes = found.outcomes.column(quantity as usize);
             Ok(found.screening.effects(outcomes, CONFIDENCE)?)

@@ -6,14 +6,15 @@ use crate::campaign::screening::Slopes;
 use crate::descent::OutcomeQuantity;
 use crate::findings::derivatives::step_below;
 use crate::numerics::interval::{Earned, Estimate};
+use crate::numerics::words::{self, Word};
 use crate::study::Study;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Why a derivative has no interval.
 const EXACT: &str = "differentiated, not sampled: as accurate as the integrator's steps";
 
 /// Derivatives of the limited outcomes (of all without a limit).
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LocalFinding {
     /// What is differentiated by: the inputs, then the design values that may move.
     pub targets: Vec<LocalTarget>,
@@ -22,7 +23,7 @@ pub struct LocalFinding {
 }
 
 /// What an outcome is differentiated by.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LocalTarget {
     /// Its path; of a statement for every surface the statement's, whose inputs move together.
     pub path: String,
@@ -35,10 +36,11 @@ pub struct LocalTarget {
 }
 
 /// The derivatives of one outcome, in the order of the targets, SI.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LocalOutcome {
     /// The outcome.
-    pub name: &'static str,
+    #[serde(deserialize_with = "words::one")]
+    pub name: Word,
     /// At the nominal design; null where that could not be computed.
     pub nominal: Vec<Option<f64>>,
     /// With every input at its law's mean.

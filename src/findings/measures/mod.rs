@@ -7,20 +7,21 @@ pub mod local;
 pub mod ranking;
 
 use super::drivers::DriversFinding;
+use super::named::{FactorName, Output};
 use super::shapley::ShapleyFinding;
+use crate::campaign::Found;
 use crate::campaign::given_sample::GivenSample;
 use crate::campaign::screening::{ScreeningOutcomes, Slopes};
-use crate::descent::OutcomeQuantity;
 use crate::error::Result;
 use crate::study::Study;
 use local::LocalFinding;
 use ranking::RankingFinding;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 pub use index::IndexColumn;
 
 /// The measures of a study.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasuresFinding {
     /// Why there are none.
     pub none: Option<String>,
@@ -37,10 +38,10 @@ pub struct MeasuresFinding {
 }
 
 /// What is measured.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasuredFactor {
     /// Path of the input, or name of the group.
-    pub name: String,
+    pub name: FactorName,
     /// How many inputs it is.
     pub inputs: usize,
     /// Whether it belongs to a group that is measured as one.
@@ -48,10 +49,10 @@ pub struct MeasuredFactor {
 }
 
 /// The measures of one output.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasuredOutput {
-    /// The output: an outcome's name, `breach.time`, `breach.any`.
-    pub name: String,
+    /// The output.
+    pub name: Output,
     /// The output in words.
     pub title: String,
     /// Whether it is a breach.
@@ -61,10 +62,10 @@ pub struct MeasuredOutput {
 }
 
 /// The measures of a study, or why there are none.
-pub(super) fn measures(
+pub(crate) fn measures(
     study: &Study,
-    given: &std::result::Result<GivenSample, String>,
-    screening: &std::result::Result<ScreeningOutcomes, String>,
+    given: &Found<GivenSample>,
+    screening: &Found<ScreeningOutcomes>,
     slopes: &Slopes,
     drivers: &DriversFinding,
     shapley: &ShapleyFinding,
@@ -74,7 +75,7 @@ pub(super) fn measures(
         Ok(sample) => sample,
         Err(why) => {
             return Ok(MeasuresFinding {
-                none: Some(why.clone()),
+                none: Some(why.to_string()),
                 samples: 0,
                 factors: Vec::new(),
                 outputs: Vec::new(),
@@ -93,14 +94,14 @@ pub(super) fn measures(
         .factors
         .iter()
         .map(|factor| MeasuredFactor {
-            name: factor.name.clone(),
+            name: FactorName::of(study, factor),
             inputs: factor.columns.len(),
             grouped: grouped(&factor.columns),
         })
         .collect();
     let mut outputs = given::outputs(study, sample)?;
-    for output in outputs.iter_mut().filter(|output| !output.breach) {
-        let Some(quantity) = OutcomeQuantity::from_name(&output.name) else { continue };
+    for output in &mut outputs {
+        let Output::Outcome(quantity) = output.name else { continue };
         output.indices.push(index::screened(sample, screening, quantity)?);
         output.indices.push(local::scaled(study, sample, slopes, quantity));
     }

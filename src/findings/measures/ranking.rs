@@ -4,10 +4,12 @@ use super::{IndexColumn, MeasuredFactor, MeasuredOutput};
 use crate::campaign::common_numbers::Event;
 use crate::campaign::given_sample::GivenSample;
 use crate::findings::drivers::DriversFinding;
+use crate::findings::named::{FactorName, Output};
 use crate::findings::shapley::ShapleyFinding;
 use crate::numerics::interval::Estimate;
-use crate::study::Study;
-use serde::Serialize;
+use crate::numerics::words::{self, Word};
+use crate::study::{Limit, Study};
+use serde::{Deserialize, Serialize};
 
 /// The measures that are compared, beside Sobol' total and Shapley: index, and its name in a table.
 const COMPARED: [(&str, &str); 8] = [
@@ -22,14 +24,15 @@ const COMPARED: [(&str, &str); 8] = [
 ];
 
 /// Ranks of the factors by every measure, of the outcome whose limit is breached most often.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RankingFinding {
     /// The outcome, and in words.
-    pub output: String,
+    pub output: Output,
     /// See `output`.
     pub title: String,
     /// The measures.
-    pub measures: Vec<&'static str>,
+    #[serde(deserialize_with = "words::list")]
+    pub measures: Vec<Word>,
     /// One entry a factor: inputs, and groups instead of their members, by their mean rank.
     pub rows: Vec<RankRow>,
     /// Kendall's coefficient of concordance: 1 if all measures rank alike, 0 if at random.
@@ -39,7 +42,7 @@ pub struct RankingFinding {
 }
 
 /// The ranks of one factor.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RankRow {
     /// Path of the input, or name of the group.
     pub factor: String,
@@ -68,8 +71,9 @@ pub(super) fn ranking(
     drivers: &DriversFinding,
     shapley: &ShapleyFinding,
 ) -> Option<RankingFinding> {
-    let share = |name: &str| {
-        let limits = study.limits.iter().enumerate().filter(|(_, l)| l.outcome.name() == name);
+    let share = |name: &Output| {
+        let is = |limit: &Limit| *name == Output::Outcome(limit.outcome);
+        let limits = study.limits.iter().enumerate().filter(|(_, limit)| is(limit));
         let counts = limits.map(|(i, _)| sample.breaches.count(Event::Limit(i)).breaches);
         counts.max().unwrap_or(0)
     };
@@ -80,19 +84,18 @@ pub(super) fn ranking(
         }
     }
     let places: Vec<usize> = (0..factors.len()).filter(|&f| !factors[f].grouped).collect();
-    let names: Vec<&str> = places.iter().map(|&f| factors[f].name.as_str()).collect();
+    let names: Vec<&FactorName> = places.iter().map(|&f| &factors[f].name).collect();
     let mut measures: Vec<Measure> = Vec::new();
     let pick_freeze = drivers.outputs.iter().find(|found| found.name == output.name);
     measures.extend(pick_freeze.and_then(|found| {
         of_estimates("Sobol' total", &names, |name| {
-            Some(&found.factors.iter().find(|factor| factor.name == name)?.indices.total)
+            Some(&found.factors.iter().find(|factor| factor.name == *name)?.indices.total)
         })
     }));
     let shares = shapley.outputs.iter().find(|found| found.name == output.name);
     measures.extend(shares.and_then(|found| {
         of_estimates("Shapley", &names, |name| {
-            let plain = name.trim_end_matches(" (all)");
-            Some(&found.effects.iter().find(|(factor, _)| factor == plain)?.1)
+            Some(&found.effects.iter().find(|(factor, _)| *factor == name.name)?.1)
         })
     }));
     for (index, name) in COMPARED {
@@ -119,7 +122,7 @@ pub(super) fn ranking(
         rows: order
             .iter()
             .map(|&f| RankRow {
-                factor: names[f].trim_end_matches(" (all)").to_owned(),
+                factor: names[f].name.clone(),
                 inputs: factors[places[f]].inputs,
                 ranks: ranks.iter().map(|ranks| ranks[f]).collect(),
                 distinct: measures.iter().map(|measure| measure.distinct[f]).collect(),
@@ -130,8 +133,8 @@ pub(super) fn ranking(
 
 fn of_estimates<'e>(
     name: &'static str,
-    factors: &[&str],
-    find: impl Fn(&str) -> Option<&'e Estimate>,
+    factors: &[&FactorName],
+    find: impl Fn(&FactorName) -> Option<&'e Estimate>,
 ) -> Option<Measure> {
     let estimates: Vec<&Estimate> =
         factors.iter().map(|factor| find(factor)).collect::<Option<_>>()?;

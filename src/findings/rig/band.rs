@@ -87,7 +87,7 @@ impl HalfSpaces {
             left_out: Vec::new(),
             probabilities: Vec::new(),
         };
-        let options = SearchOptions { seed: study.sampling.seed, ..SearchOptions::default() };
+        let options = SearchOptions::seeded(study.sampling.seed);
         for (i, limit) in study.limits.iter().enumerate() {
             let (_, found) = form(&state, i, &options)?;
             let Some(point) = found.nearest(i) else {

@@ -4,7 +4,8 @@ use super::Figure;
 use super::axis::Axis;
 use super::chart::{BLUE, Chart, INK};
 use super::key::Swatch;
-use crate::findings::{CONFIDENCE, DriverOutput, FactorFinding, Findings};
+use crate::analysis::Findings;
+use crate::findings::{CONFIDENCE, DriverOutput, FactorFinding, Output};
 use crate::numerics::interval::Estimate;
 use crate::render::driver_view::ranked;
 use crate::render::figures_of_speech::probability;
@@ -22,7 +23,7 @@ pub(super) fn figures(findings: &Findings) -> Vec<Figure> {
         .drivers
         .outputs
         .iter()
-        .filter(|output| output.name == "breach.any" || limited.contains(&output.name.as_str()))
+        .filter(|output| output.name == Output::AnyBreach || output.name.is_one_of(&limited))
         .collect();
     outputs.sort_by_key(|output| !output.breach);
     outputs.into_iter().filter_map(tornado).collect()
@@ -51,7 +52,7 @@ fn tornado(output: &DriverOutput) -> Option<Figure> {
         (Swatch::Area(BLUE, 1.0), "alone (first order)".to_owned()),
         (Swatch::Line(INK, false), format!("{} interval", probability(CONFIDENCE))),
     ];
-    let name = format!("drivers-{}", output.name.replace('.', "-"));
+    let name = format!("drivers-{}", output.name.to_string().replace('.', "-"));
     let x = Axis::linear("share of the variance", low - room, high + room);
     let y = Axis::linear("", 0.45, rows + 0.55);
     let height = 110.0 + ROW * rows;
@@ -99,7 +100,7 @@ fn tornado(output: &DriverOutput) -> Option<Figure> {
 /// the number of its members.
 fn row_name(factor: &FactorFinding) -> String {
     match factor.inputs {
-        1 => factor.name.clone(),
-        many => format!("{} ×{many}", factor.name.trim_end_matches(" (all)")),
+        1 => factor.name.to_string(),
+        many => format!("{} ×{many}", factor.name.name),
     }
 }

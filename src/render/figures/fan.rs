@@ -4,8 +4,9 @@ use super::Figure;
 use super::axis::Axis;
 use super::chart::{BLUE, Chart, HEIGHT, INK};
 use super::key::Swatch;
+use crate::analysis::Findings;
 use crate::descent::OutcomeQuantity;
-use crate::findings::{Distribution, Fan, FanBand, Findings};
+use crate::findings::{Distribution, Fan, FanBand};
 use crate::render::figures_of_speech::count;
 use crate::units::{DisplayUnit, Quantity, display};
 

@@ -35,7 +35,7 @@ mod sweep_map;
 mod trade;
 mod unknown;
 
-use crate::findings::Findings;
+use crate::analysis::Findings;
 
 pub use calibration::calibration_figures;
 pub use paper::{paper_figures, starting_temperature_figure};

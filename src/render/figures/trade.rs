@@ -4,8 +4,9 @@ use super::Figure;
 use super::axis::Axis;
 use super::chart::{Chart, HEIGHT, PALETTE};
 use super::key::Swatch;
+use crate::analysis::Findings;
+use crate::findings::CONFIDENCE;
 use crate::findings::trade::{TradeCurve, TradePoint};
-use crate::findings::{CONFIDENCE, Findings};
 use crate::render::figures_of_speech::probability;
 use crate::units::number;
 

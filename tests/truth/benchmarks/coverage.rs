@@ -3,7 +3,6 @@
 use super::Benchmark;
 use reeldown::reliability::cross_entropy::{CrossEntropyOptions, cross_entropy};
 use reeldown::reliability::crude::{CrudeOptions, crude_monte_carlo};
-use reeldown::reliability::design_point::SearchOptions;
 use reeldown::reliability::directional::{DirectionalOptions, directional_sampling};
 use reeldown::reliability::estimate::{Estimate, Method};
 use reeldown::reliability::importance::{ImportanceOptions, importance_sampling};
@@ -27,35 +26,36 @@ pub const CSV_HEADER: &str = "method,problem,probability,first_seed,seeds,stated
 /// samples of each method.
 pub fn answer(method: Method, benchmark: &Benchmark, seed: u64, effort: f64) -> Estimate {
     let (state, event) = (&benchmark.limits, benchmark.event);
-    let search = SearchOptions { seed, ..SearchOptions::default() };
     let share = |samples: f64| (samples * effort) as u64;
     match method {
         Method::CrudeMonteCarlo => {
-            let options = CrudeOptions { seed, samples: share(1e5), ..Default::default() };
+            let options = CrudeOptions { samples: share(1e5), ..CrudeOptions::seeded(seed) };
             crude_monte_carlo(state, event, &options)
         }
         Method::ImportanceSampling => {
             let options =
-                ImportanceOptions { seed, search, samples: share(2e4), ..Default::default() };
+                ImportanceOptions { samples: share(2e4), ..ImportanceOptions::seeded(seed) };
             importance_sampling(state, event, &options).map(|(estimate, _)| estimate)
         }
         Method::SubsetSimulation => {
             let samples_per_level = share(1e3) as usize;
-            let options = SubsetOptions { seed, samples_per_level, ..Default::default() };
+            let options = SubsetOptions { samples_per_level, ..SubsetOptions::seeded(seed) };
             subset_simulation(state, event, &options)
         }
         Method::LineSampling => {
-            let options =
-                LineOptions { seed, search, lines: share(32.0).max(8), ..Default::default() };
+            let options = LineOptions { lines: share(32.0).max(8), ..LineOptions::seeded(seed) };
             line_sampling(state, event, &options)
         }
         Method::DirectionalSampling => {
-            let options = DirectionalOptions { seed, directions: share(2e3), ..Default::default() };
+            let options =
+                DirectionalOptions { directions: share(2e3), ..DirectionalOptions::seeded(seed) };
             directional_sampling(state, event, &options)
         }
         Method::CrossEntropy => {
-            let options =
-                CrossEntropyOptions { seed, final_samples: share(2e4), ..Default::default() };
+            let options = CrossEntropyOptions {
+                final_samples: share(2e4),
+                ..CrossEntropyOptions::seeded(seed)
+            };
             cross_entropy(state, event, &options)
         }
         _ => panic!("{} states no interval", method.name()),

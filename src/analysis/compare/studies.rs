@@ -1,6 +1,6 @@
 //! What differs between two studies, in the words in which they are written.
 
-use super::compare::ChangeFinding;
+use super::ChangeFinding;
 use crate::study::{DrawnTogether, ResolvedCorrelation, StoppingPlan, Study};
 use crate::units::number;
 

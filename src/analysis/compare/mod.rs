@@ -1,11 +1,14 @@
 //! What changed between two finished runs: inputs, probabilities, margins, drivers.
 
-use super::CONFIDENCE;
-use super::compare_findings::{drivers, margins};
-use super::trade::proportion;
+mod reported;
+mod studies;
+
+use super::Findings;
 use crate::campaign::common_numbers::{Breaches, Event};
 use crate::descent::OutcomeQuantity;
 use crate::error::Result;
+use crate::findings::trade::proportion;
+use crate::findings::{CONFIDENCE, VerdictWord};
 use crate::numerics::interval::{Earned, Estimate, Interval};
 use crate::numerics::special::normal;
 use crate::reliability::paired::{PairedCounts, replicated_difference};
@@ -13,8 +16,8 @@ use crate::reliability::replicates::from_replicate_counts;
 use crate::reliability::unpaired;
 use crate::sampling::Design;
 use crate::study::{Limit, LimitKind, Study};
+use reported::{drivers, margins};
 use serde::Serialize;
-use serde_json::Value;
 
 /// One of the two runs.
 #[derive(Debug)]
@@ -23,8 +26,8 @@ pub struct FinishedRun {
     pub name: String,
     /// Its study.
     pub study: Study,
-    /// Its `findings.json`.
-    pub findings: Value,
+    /// Its findings.
+    pub findings: Findings,
     /// Its margins, limit by limit, SI, in the order of the samples; NaN where faulted.
     pub margins: Vec<Vec<f64>>,
 }
@@ -61,8 +64,8 @@ pub struct RunFinding {
     pub name: String,
     /// Title of its study.
     pub title: String,
-    /// Its verdict: `met`, `not_met`, `undecided`, `no_requirement`.
-    pub verdict: String,
+    /// Its verdict.
+    pub verdict: VerdictWord,
     /// Its samples.
     pub samples: u64,
     /// SHA-256 of its resolved study.
@@ -198,7 +201,7 @@ pub fn compare(before: &FinishedRun, after: &FinishedRun) -> Result<CompareFindi
     Ok(CompareFinding {
         format: 1,
         runs: [run_finding(before), run_finding(after)],
-        changes: super::compare_studies::changes(&before.study, &after.study),
+        changes: studies::changes(&before.study, &after.study),
         paired: pairing.rows.is_some(),
         pairing: pairing.words,
         probabilities,
@@ -210,13 +213,12 @@ pub fn compare(before: &FinishedRun, after: &FinishedRun) -> Result<CompareFindi
 }
 
 fn run_finding(run: &FinishedRun) -> RunFinding {
-    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     RunFinding {
         name: run.name.clone(),
         title: run.study.title.clone(),
-        verdict: text(&run.findings["verdict"]["word"]),
-        samples: run.findings["method"]["samples"].as_u64().unwrap_or_default(),
-        study_digest: text(&run.findings["reproduction"]["study_digest"]),
+        verdict: run.findings.verdict.word,
+        samples: run.findings.method.samples,
+        study_digest: run.findings.reproduction.study_digest.clone(),
     }
 }
 

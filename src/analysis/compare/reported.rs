@@ -1,7 +1,7 @@
 //! What two runs' findings say of margins and drivers, side by side.
 
-use super::compare::{DriverChange, FinishedRun, MarginChange};
-use serde_json::Value;
+use super::{DriverChange, FinishedRun, MarginChange};
+use crate::findings::{DriverOutput, FactorFinding, Output};
 
 /// Drivers listed.
 const DRIVERS: usize = 6;
@@ -13,11 +13,9 @@ pub(super) fn margins(
     both: &[(usize, usize)],
 ) -> Vec<MarginChange> {
     let list = |run: &FinishedRun, limit: &str| -> Vec<(f64, Option<f64>)> {
-        let all = run.findings["margins"].as_array();
-        let found = all.into_iter().flatten().find(|margin| margin["limit"] == limit);
-        let quantiles = found.and_then(|margin| margin["quantiles"].as_array());
-        let row = |q: &Value| Some((q["share"].as_f64()?, q["margin"].as_f64()));
-        quantiles.into_iter().flatten().filter_map(row).collect()
+        let found = run.findings.margins.iter().find(|margin| margin.limit == limit);
+        let quantiles = found.into_iter().flat_map(|margin| &margin.quantiles);
+        quantiles.map(|quantile| (quantile.share, quantile.margin)).collect()
     };
     let mut changes = Vec::new();
     for &(i, _) in both {
@@ -42,17 +40,15 @@ type Index = (f64, Option<(f64, f64)>);
 
 /// The total indices of "any breach", factors that belong to a group left out.
 fn indices(run: &FinishedRun) -> Vec<(String, Index)> {
-    let outputs = run.findings["drivers"]["outputs"].as_array();
-    let ranks = |output: &&Value| output["name"] == "breach.any" && output["too_few"].is_null();
-    let any = outputs.into_iter().flatten().find(ranks);
-    let factors = any.and_then(|output| output["factors"].as_array());
-    let index = |factor: &Value| {
-        let total = &factor["total"];
-        let ends = &total["interval"];
-        let interval = ends["lower"].as_f64().zip(ends["upper"].as_f64());
-        Some((factor["name"].as_str()?.to_owned(), (total["value"].as_f64()?, interval)))
+    let ranks =
+        |output: &&DriverOutput| output.name == Output::AnyBreach && output.too_few.is_none();
+    let any = run.findings.drivers.outputs.iter().find(ranks);
+    let index = |factor: &FactorFinding| {
+        let total = &factor.indices.total;
+        let interval = total.interval.interval().map(|ends| (ends.lower, ends.upper));
+        Some((factor.name.to_string(), (total.value?, interval)))
     };
-    let alone = factors.into_iter().flatten().filter(|factor| factor["grouped"] != true);
+    let alone = any.into_iter().flat_map(|output| &output.factors).filter(|factor| !factor.grouped);
     alone.filter_map(index).collect()
 }
 
