@@ -71,7 +71,7 @@ fn property_every_index_has_an_interval_or_says_why_and_a_negative_one_is_explai
 fn property_the_ranking_is_of_the_outcome_that_is_breached_most_and_is_in_the_report() {
     let sample = independent();
     let ranking = sample.findings.measures.ranking.as_ref().unwrap();
-    assert_eq!(ranking.output, "time");
+    assert_eq!(ranking.output.to_string(), "time");
     // Shapley effects were not asked for.
     assert_eq!(ranking.measures.len(), 9);
     assert_eq!(ranking.rows.len(), 10);
