@@ -81,7 +81,9 @@ impl Study {
         let whole = Target::whole(target.parameter);
         let inherited = || self.stated.iter().find(|stated| stated.target == whole);
         let own = self.inputs.iter().find(|input| input.target == target);
-        let measured = own.filter(|own| self.prior.is_some() && own.marginal.mean() == value);
+        let measured = own.filter(|own| {
+            !own.about_nominal && self.prior.is_some() && own.marginal.mean() == value
+        });
         let source = match (stated.or_else(inherited), measured) {
             (Some(stated), _) => format!("{}: {}", stated.origin, stated.text),
             (None, Some(own)) => format!("mean of its law: {}", own.source),

@@ -2,7 +2,6 @@
 
 use reeldown::campaign::{self, Progress, Record};
 use reeldown::findings::{self, Evidence, Findings};
-use reeldown::study::{Override, Study};
 use std::sync::OnceLock;
 
 /// A run and its findings.
@@ -16,9 +15,7 @@ fn unasked() -> String {
 }
 
 fn run(settings: &[&str]) -> Sample {
-    let overrides: Vec<Override> =
-        settings.iter().map(|text| Override::parse("--set", text).unwrap()).collect();
-    let study = Study::load(None, &overrides).unwrap();
+    let study = crate::habe::pinned(settings);
     let progress = Progress::default();
     let replicates = campaign::sampler(&study).unwrap().replicates();
     let mut record = Record::new(&study, replicates).unwrap();
