@@ -124,7 +124,7 @@ table! {
         "viscosity of the lot of fluid that is filled in, over the nominal one", "nominal";
     FluidViscosityCoefficient, "fluid.viscosity_coefficient", "A", Number, 0.003, "0.003", 0.0, INF,
         true, "coefficient A of the viscosity law", "paper";
-    FluidViscosityTemperature, "fluid.viscosity_temperature", "B", TemperatureDifference, 1740.0,
+    FluidViscosityTemperature, "fluid.viscosity_temperature", "B", TemperatureConstant, 1740.0,
         "1740 K", 0.0, INF, false, "temperature B of the viscosity law", "paper";
     FluidShearFactor, "fluid.shear_factor", "f", Number, 1.0, "1", 0.0, INF, true,
         "viscosity at the working shear rate over the law's", "paper: 1";

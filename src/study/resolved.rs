@@ -115,7 +115,7 @@ impl Study {
             description: info.description,
             quantity: info.quantity,
             value,
-            text: engineering(value, info.quantity),
+            text: units::engineering(value, info.quantity),
             source,
             uncertain,
         }
@@ -174,15 +174,5 @@ impl Study {
             });
         }
         found
-    }
-}
-
-/// The value as its reader expects it: the one temperature difference, `B`, belongs to a law in K.
-fn engineering(value: f64, quantity: Quantity) -> String {
-    match quantity {
-        Quantity::TemperatureDifference => {
-            units::format_engineering(value, quantity, units::System::Si, 6)
-        }
-        _ => units::engineering(value, quantity),
     }
 }

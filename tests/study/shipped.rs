@@ -251,7 +251,7 @@ fn property_later_cards_win_input_by_input() {
     let own = "[fluid.shear_factor]\nlaw = \"uniform\"\nlower = 0.9\nupper = 1.1\nknown = \"never\"\nsource = \"b\"\n";
     let text = "title = \"a\"\ncard = [\"habe.toml\", \"card.toml\"]\n";
     let study = study_with(text, own, &[]).expect("a study");
-    assert_eq!(study.inputs.len(), 28);
+    assert_eq!(study.inputs.len(), 23);
     let shear = Target::whole(Parameter::FluidShearFactor);
     let input = study.inputs.iter().find(|input| input.target == shear).expect("an input");
     assert_eq!((input.marginal.support(), input.source.as_str()), ((0.9, 1.1), "b"));
@@ -342,7 +342,7 @@ fn property_the_most_demanding_requirement_that_is_read_can_be_judged() {
 #[test]
 fn property_a_group_of_one_input_is_that_input() {
     // The pair's index used to be lost without a word: a factor of one input has no group beside it.
-    let card = include_str!("../../distributions/habe.toml");
+    let card = include_str!("../fixtures/habe/card.toml");
     let study = "title = \"x\"\ncard = [\"habe.toml\", \"card.toml\"]\n[sensitivity]\n\
                  pairs = [[\"law\", \"initial.temperature\"]]\n";
     let shear = "[fluid.shear_factor]\nlaw = \"lognormal\"\nmedian = 1\ncv = \"8 %\"\n\
