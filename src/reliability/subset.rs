@@ -258,6 +258,7 @@ fn estimate(
         evaluations: evaluator.evaluations,
         faults: evaluator.faults,
         diagnostics,
+        replicates: if plain { Vec::new() } else { replicates },
     })
 }
 

@@ -139,7 +139,8 @@ fn rare(events: &[Rare], interval_header: &str) -> String {
     }
     let mut text = parts.join("\n");
     for event in events.iter().filter(|event| event.agreement.starts_with("AGREEMENT")) {
-        text += &format!("\n{}: {}", event.title, event.agreement);
+        text.push('\n');
+        text += &wrapped(&format!("{}: {}", event.title, event.agreement));
     }
     text
 }
