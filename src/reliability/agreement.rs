@@ -123,8 +123,11 @@ impl Side {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::elementary::exp;
     use crate::numerics::interval::{Earned, Interval};
     use crate::reliability::event::Event;
+    use crate::streams::{Purpose, stream};
+    use rand_distr::{Distribution, StandardNormal};
 
     fn estimate(method: Method, p: f64, ends: Option<(f64, f64)>) -> Estimate {
         let mut estimate = Estimate::without_number(method, Event::Any, "nothing");
@@ -157,10 +160,10 @@ mod tests {
         let risk = 0.01;
         let exact = estimate(Method::ImportanceSampling, 1.0, Some((1.0, 1.0 + 1e-9)));
         let alarms = (0..20_000).filter(|&k| {
-            let rng = &mut crate::streams::stream(7, crate::streams::Purpose::Test, k);
+            let rng = &mut stream(7, Purpose::Test, k);
             let mut replicate = || {
-                let u: f64 = rand::Rng::random(rng);
-                crate::numerics::elementary::exp(0.8 * normal::quantile(u) - 0.32)
+                let z: f64 = StandardNormal.sample(rng);
+                exp(0.8 * z - 0.32)
             };
             let replicates: Vec<f64> = (0..10).map(|_| replicate()).collect();
             let (mean, _, interval) = interval_of_replicates(&replicates, 0.95);
