@@ -1,13 +1,15 @@
-//! The certificate behind the rare-event methods: crude Monte Carlo over the default study at two
-//! nominal viscosities, no table written.
+//! The certificate behind the rare-event methods: crude Monte Carlo over the study of
+//! `tests/fixtures/habe/` at two nominal viscosities, no table written.
 //!
 //! `cargo bench --bench crude_certificate -- [SAMPLES]` (default 10^8: about five minutes on two cores)
 //! prints the counts as rows of the table in `reports/certificates/crude.md`.
 
 use reeldown::campaign::{self, Progress};
 use reeldown::reliability::breach_counts::BreachCounts;
-use reeldown::study::{Override, Study};
 use std::time::Instant;
+
+#[path = "../tests/fixtures/habe.rs"]
+mod habe;
 
 fn main() {
     let wanted = std::env::args().skip(1).find_map(|argument| argument.parse::<u64>().ok());
@@ -21,11 +23,7 @@ fn main() {
             // Not the seed of the published study: these samples are others.
             "sampling.seed=20261122".to_owned(),
         ];
-        let overrides: Vec<Override> = set
-            .iter()
-            .map(|statement| Override::parse("--set", statement).expect("a valid statement"))
-            .collect();
-        let study = Study::load(None, &overrides).expect("the embedded study is valid");
+        let study = habe::pinned(&set.each_ref().map(String::as_str));
         let mut counts = BreachCounts::new(study.limits.len()).expect("few limits");
         let begun = Instant::now();
         let mut sink = |table: reeldown::outcomes::OutcomeTable| {

@@ -1,8 +1,8 @@
 //! P(fluid above 450 °F) and the study's other limits by every method, at two nominal viscosities, beside
 //! crude Monte Carlo over 10⁸ descents, with what the methods cost and the most likely way to breach.
 //!
-//! `cargo run --release --example habe_rare` writes `reports/certificates/habe_rare.md`: the default study with
-//! `fluid.nominal_viscosity` and `reliability.methods` set, the same page every time.
+//! `cargo run --release --example habe_rare` writes `reports/certificates/habe_rare.md`: the study of `tests/fixtures/habe/`
+//! with `fluid.nominal_viscosity` and `reliability.methods` set, the same page every time.
 
 use reeldown::analysis::Sampling;
 use reeldown::campaign::{self, Progress};
@@ -37,9 +37,9 @@ fn main() -> std::process::ExitCode {
 fn page() -> Result<String> {
     let mut text = format!(
         "# How likely is it that the fluid gets too hot?\n\n\
-        The default study (`reports/habe/study.toml`) at two nominal viscosities, every limit, every pair of \
+        The study `tests/fixtures/habe/study.toml` at two nominal viscosities, every limit, every pair of \
         limits and any limit, by every method. Made by `cargo run --release --example habe_rare`, version {}; \
-        the same numbers come from `reeldown run --set 'fluid.nominal_viscosity=\"100000 cSt\"' --set \
+        the same numbers come from `reeldown run tests/fixtures/habe/study.toml --set 'fluid.nominal_viscosity=\"100000 cSt\"' --set \
         'reliability.methods={METHODS}'`. The rows of crude Monte Carlo over 10⁸ descents are those of \
         [crude.md](crude.md), another seed; a pair has none there. \"Descents\" holds searches and pilots.\n\n\
         A method without an interval says why below its table.\n",
@@ -67,7 +67,8 @@ fn study(viscosity: &str) -> Result<Study> {
         .collect::<std::result::Result<Vec<Override>, _>>();
     let refused = |why: &dyn std::fmt::Debug| Error::argument(format!("{why:?}"));
     let overrides = overrides.map_err(|why| refused(&why))?;
-    Study::load(None, &overrides).map_err(|why| refused(&why))
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/habe/study.toml");
+    Study::load(Some(path.as_ref()), &overrides).map_err(|why| refused(&why))
 }
 
 /// What the report of such a run says of rare breaches.

@@ -42,10 +42,15 @@ pub struct MovedValue {
 fn exact(study: &Study) -> Vec<Target> {
     let rows = study.resolved().into_iter().filter(|row| row.uncertain.is_none());
     let rows = rows.map(|row| row.target);
-    // A gap as a whole of which single surfaces are uncertain is not exact.
-    let varied =
-        |target: &Target| study.inputs.iter().any(|i| i.target.parameter == target.parameter);
-    rows.filter(|target| target.surface.is_some() || !varied(target)).collect()
+    let varied = |parameter| study.inputs.iter().any(|input| input.target.parameter == parameter);
+    rows.filter(|target| match target.parameter {
+        // The lot's law is that of the nominal viscosity; without one the two are the same step, made once.
+        Parameter::FluidLotFactor => false,
+        Parameter::FluidNominalViscosity => !varied(Parameter::FluidLotFactor),
+        // A gap as a whole of which single surfaces are uncertain is not exact.
+        parameter => target.surface.is_some() || !varied(parameter),
+    })
+    .collect()
 }
 
 /// The step of a value, SI.

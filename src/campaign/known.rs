@@ -184,6 +184,16 @@ fn lot_values(study: &Study, target: Target) -> Vec<f64> {
     (0..SETTINGS).map(|k| from + (to - from) * (k as f64 / last)).collect()
 }
 
+/// The lot's viscosity is measured: its law has nothing left to say. A lot whose law is the rows of a calibration is the
+/// lot that was calibrated: another one keeps its factor.
+fn as_measured(study: &Study, target: Target, value: f64, change: &mut Change) {
+    let is_lot = |&j: &usize| study.inputs[j].target.parameter == Parameter::FluidLotFactor;
+    let lot = (0..study.inputs.len()).find(is_lot).filter(|&j| study.joint.sample_of(j).is_none());
+    let factor = lot.map(|j| (j, study.inputs[j].marginal.median()));
+    change.design.push((target, factor.map_or(value, |(_, factor)| value / factor)));
+    change.known.extend(factor);
+}
+
 /// Values of a measured input in a map: every other setting of its chart.
 const COARSE: usize = SETTINGS / 2 + 1;
 
@@ -214,7 +224,7 @@ fn map_of(
             let mut change = Change { known: vec![(input, a)], ..Change::default() };
             match beside {
                 Second::Input(other) => change.known.push((other, b)),
-                Second::Lot(target) => change.design.push((target, b)),
+                Second::Lot(target) => as_measured(study, target, b, &mut change),
             }
             breaches.push(sample.changed(&change, progress)?);
         }

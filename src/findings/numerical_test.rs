@@ -1,4 +1,4 @@
-//! What a verdict becomes under numerical errors that were measured: of 600 samples of the default study.
+//! What a verdict becomes under numerical errors that were measured: of 600 samples of the study in `tests/fixtures/habe`.
 
 use super::*;
 use crate::campaign::{self, NearLimit, Progress};
@@ -11,7 +11,8 @@ fn sampled(reliability: &str) -> (Study, Record) {
     let settings = ["sampling.samples=600", reliability, "requirement.confidence=0.9"];
     let overrides: Vec<Override> =
         settings.iter().map(|text| Override::parse("--set", text).expect("a setting")).collect();
-    let study = Study::load(None, &overrides).expect("the default study");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/habe/study.toml");
+    let study = Study::load(Some(path.as_ref()), &overrides).expect("the pinned study");
     let mut record = Record::new(&study, 1).expect("a record");
     let mut sink = |table| {
         record.absorb(&table);

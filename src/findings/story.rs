@@ -116,6 +116,7 @@ fn cause(target: Target, high: bool) -> String {
     match target.parameter {
         Parameter::InitialTemperature => pick("hot start", "cold start"),
         Parameter::FluidShearFactor
+        | Parameter::FluidLotFactor
         | Parameter::FluidNominalViscosity
         | Parameter::FluidViscosityCoefficient => pick("thick fluid", "thin fluid"),
         Parameter::FluidViscosityTemperature => {

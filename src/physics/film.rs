@@ -22,7 +22,7 @@
 //!
 //! # Shear thinning
 //! `μ = ρ ν(T)/(1 + X^m)` with the Cross group `X = λ (ν/ν0) γ̇`: time–temperature superposition, for `λ` scales with the
-//! viscosity. Then `τ = τ* X/(1 + X^m)` with `τ* = ρ ν0/λ`, so `X` is one number across the film, `X = λ f A ω r/(d ē)`, with
+//! viscosity. Then `τ = τ* X/(1 + X^m)` with `τ* = ρ ν0/λ`, so `X` is one number across the film, `X = λ f f_lot A ω r/(d ē)`, with
 //! `ē` the mean of the fluidity `e = exp(−B/T)` across the film: nothing has to be iterated for.
 //! With a thermal expansion `α` the density, and `ρ ν` with it, falls as `exp(−α (T − 25 °C))`, in the group too.
 
@@ -32,7 +32,7 @@
 )]
 
 use super::design::Design;
-use super::fluid::MORE_STEPS;
+use super::fluid::{Fluid, MORE_STEPS};
 use super::parameters::Parameter;
 use super::space::{DENSITY_TEMPERATURE_K, PI, SMALLEST_BORE, Space};
 use super::thermal::Thermal;
@@ -48,7 +48,7 @@ pub struct Film<R> {
     pub half_width_m: R,
     /// `4 k_f 2n A/(d C1)`, 1/s: conduction across the film per temperature on the reference interval [−1, 1].
     pub conduction_per_s: R,
-    /// `λ f A/d`, s/m: Cross group per rim speed in the limit of an infinitely hot fluid.
+    /// `λ f f_lot A/d`, s/m: Cross group per rim speed in the limit of an infinitely hot fluid.
     pub cross_time_s_per_m: R,
     /// `(k_m/c_v)/((ro − ri)/2)²`, 1/s: conduction along the metal on the reference interval.
     pub spreading_per_s: R,
@@ -73,8 +73,6 @@ impl<R: Real> Film<R> {
         }
         let inverse_gap = inverse_gaps / count;
         let area = R::constant(PI) * (outer * outer - inner * inner);
-        let thickness =
-            get(Parameter::FluidShearFactor) * get(Parameter::FluidViscosityCoefficient);
         Film {
             middle_radius_m: half * (outer + inner),
             half_width_m: half_width,
@@ -83,7 +81,9 @@ impl<R: Real> Film<R> {
                 * area
                 * inverse_gaps
                 / get(Parameter::ThermalFluidCapacity),
-            cross_time_s_per_m: get(Parameter::FluidCrossTimeConstant) * thickness * inverse_gap,
+            cross_time_s_per_m: get(Parameter::FluidCrossTimeConstant)
+                * Fluid::thickness(design)
+                * inverse_gap,
             spreading_per_s: get(Parameter::MetalConductivity)
                 / (get(Parameter::MetalHeatCapacity) * half_width * half_width),
             expansion_per_k: get(Parameter::FluidExpansion),

@@ -9,13 +9,13 @@ use crate::numerics::real::{CONVERGED, Real};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fluid<R> {
     /// Torque per reel speed in the limit of an infinitely hot fluid,
-    /// `(π/2)(ro⁴ − ri⁴) Σ(1/d_k) ρ f A ν0`, N·m·s.
+    /// `(π/2)(ro⁴ − ri⁴) Σ(1/d_k) ρ f f_lot A ν0`, N·m·s.
     pub torque_per_speed_nms: R,
     /// Viscosity temperature `B`, K.
     pub viscosity_temperature_k: R,
     /// Averaging offset `ε`.
     pub averaging_offset: R,
-    /// Cross group per reel speed in the limit of an infinitely hot fluid, `λ f A r_t/d_h`, s.
+    /// Cross group per reel speed in the limit of an infinitely hot fluid, `λ f f_lot A r_t/d_h`, s.
     pub cross_time_s: R,
     /// Cross exponent `m`.
     pub cross_exponent: R,
@@ -35,8 +35,7 @@ impl<R: Real> Fluid<R> {
     #[inline(always)]
     pub fn new(design: &Design<R>, brake: &Brake<R>, shear_thinning: bool) -> Self {
         let get = |parameter| design.get(parameter);
-        let thickness =
-            get(Parameter::FluidShearFactor) * get(Parameter::FluidViscosityCoefficient);
+        let thickness = Self::thickness(design);
         Fluid {
             torque_per_speed_nms: brake.torque_factor_m3
                 * get(Parameter::FluidDensity)
@@ -50,6 +49,15 @@ impl<R: Real> Fluid<R> {
             cross_exponent: get(Parameter::FluidCrossExponent),
             shear_thinning,
         }
+    }
+
+    /// `f f_lot A`: the viscosity in the limit of an infinitely hot fluid over the nominal one. What multiplies the
+    /// viscosity multiplies the Cross time constant with it, so that the fluid of a thick lot thins at the same stress.
+    #[inline(always)]
+    pub(super) fn thickness(design: &Design<R>) -> R {
+        design.get(Parameter::FluidShearFactor)
+            * design.get(Parameter::FluidLotFactor)
+            * design.get(Parameter::FluidViscosityCoefficient)
     }
 
     /// `exp(B/Tv)` with `Tv = T1 + ε (T1 − T2)`: paper (6) without its constants.

@@ -16,6 +16,7 @@ pub enum Parameter {
     BrakeGap,
     FluidDensity,
     FluidNominalViscosity,
+    FluidLotFactor,
     FluidViscosityCoefficient,
     FluidViscosityTemperature,
     FluidShearFactor,
@@ -76,7 +77,7 @@ pub struct ParameterInfo {
 }
 
 /// Number of parameters.
-pub const PARAMETER_COUNT: usize = 36;
+pub const PARAMETER_COUNT: usize = 37;
 
 const IN: f64 = 0.0254;
 const FT: f64 = 0.3048;
@@ -119,9 +120,11 @@ table! {
         "density of the brake fluid", "dimethyl silicone data";
     FluidNominalViscosity, "fluid.nominal_viscosity", "ν0", KinematicViscosity, 125_000.0 * CST,
         "125000 cSt", 0.0, INF, true, "nominal kinematic viscosity of the brake fluid", "paper";
+    FluidLotFactor, "fluid.lot_factor", "f_lot", Number, 1.0, "1", 0.0, INF, true,
+        "viscosity of the lot of fluid that is filled in, over the nominal one", "nominal";
     FluidViscosityCoefficient, "fluid.viscosity_coefficient", "A", Number, 0.003, "0.003", 0.0, INF,
         true, "coefficient A of the viscosity law", "paper";
-    FluidViscosityTemperature, "fluid.viscosity_temperature", "B", TemperatureDifference, 1740.0,
+    FluidViscosityTemperature, "fluid.viscosity_temperature", "B", TemperatureConstant, 1740.0,
         "1740 K", 0.0, INF, false, "temperature B of the viscosity law", "paper";
     FluidShearFactor, "fluid.shear_factor", "f", Number, 1.0, "1", 0.0, INF, true,
         "viscosity at the working shear rate over the law's", "paper: 1";

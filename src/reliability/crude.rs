@@ -79,5 +79,6 @@ pub fn from_counts(event: Event, counts: Proportion, confidence: f64) -> Result<
         evaluations: counts.samples,
         faults: counts.faults,
         diagnostics: vec![format!("{} breaches of {}", counts.breaches, counts.samples)],
+        replicates: Vec::new(),
     })
 }

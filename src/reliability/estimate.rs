@@ -72,6 +72,10 @@ pub struct Estimate {
     pub faults: u64,
     /// What the method noticed, in sentences.
     pub diagnostics: Vec<String>,
+    /// The independent replicates that the interval was made of, by
+    /// [`interval_of_replicates`](super::log_replicates::interval_of_replicates); none if it was made otherwise.
+    #[serde(skip)]
+    pub replicates: Vec<f64>,
 }
 
 impl Estimate {
@@ -88,6 +92,7 @@ impl Estimate {
             evaluations: 0,
             faults: 0,
             diagnostics: vec![why],
+            replicates: Vec::new(),
         }
     }
 
@@ -125,6 +130,7 @@ impl Estimate {
             evaluations: safe.evaluations + breach.evaluations,
             faults,
             diagnostics,
+            replicates: Vec::new(),
             ..safe
         }
     }

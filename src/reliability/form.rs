@@ -48,6 +48,7 @@ pub(super) fn first_order(method: Method, event: Event, probability: f64) -> Est
         evaluations: 0,
         faults: 0,
         diagnostics: Vec::new(),
+        replicates: Vec::new(),
     }
 }
 

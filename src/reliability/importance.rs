@@ -258,5 +258,6 @@ pub(super) fn combined(
             low.effective_breaches,
             100.0 * low.largest_share
         )],
+        replicates: Vec::new(),
     }
 }

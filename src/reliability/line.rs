@@ -529,6 +529,7 @@ impl Sampling<'_> {
                 all,
                 self.lines.len().div_ceil(2)
             )],
+            replicates: Vec::new(),
         };
         widen(&mut estimate, open);
         Ok(estimate)

@@ -259,6 +259,7 @@ fn estimate(
         evaluations: evaluator.evaluations,
         faults: evaluator.faults,
         diagnostics,
+        replicates: if plain { Vec::new() } else { replicates },
     })
 }
 

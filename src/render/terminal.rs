@@ -143,7 +143,8 @@ fn rare(events: &[Rare], interval_header: &str) -> String {
     }
     let mut text = parts.join("\n");
     for event in events.iter().filter(|event| event.disagree) {
-        text += &format!("\n{}: {}", event.title, event.agreement);
+        text.push('\n');
+        text += &wrapped(&format!("{}: {}", event.title, event.agreement));
     }
     text
 }

@@ -384,7 +384,7 @@ fn notes(design: &Design<f64>, inputs: &[Input], stated: &[Stated]) -> Vec<Strin
             other.target == input.target
                 || gap && other.target == Target::whole(Parameter::BrakeGap)
         };
-        if let Some(stated) = stated.iter().rev().find(covers) {
+        if let (Some(stated), false) = (stated.iter().rev().find(covers), input.about_nominal) {
             add(format!(
                 "{} = {} ({}) is the nominal value; samples follow the card's law: {}",
                 stated.target.path(),

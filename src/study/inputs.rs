@@ -28,9 +28,9 @@ pub(super) fn inputs(
     let mut inputs = Vec::new();
     let mut mistakes = Mistakes::default();
     for statement in &card.statements {
-        let input = check_surface(statement.target, design, &statement.key)
-            .and_then(|()| input(statement, &mut *files));
-        let Some((template, each_surface)) = mistakes.keep(input) else { continue };
+        let stated = check_surface(statement.target, design, &statement.key)
+            .and_then(|()| input(statement, design.at(statement.target), &mut *files));
+        let Some((template, each_surface)) = mistakes.keep(stated) else { continue };
         if !each_surface {
             inputs.push(template);
             continue;
@@ -40,9 +40,15 @@ pub(super) fn inputs(
             // A surface with a statement of its own keeps that.
             let drawn = card.together.iter().flat_map(|together| &together.members);
             let own = card.statements.iter().map(|other| other.target);
-            if own.chain(drawn.map(|(other, _)| *other)).all(|other| other != target) {
-                inputs.push(Input { target, ..template.clone() });
+            if own.chain(drawn.map(|(other, _)| *other)).any(|other| other == target) {
+                continue;
             }
+            // A surface with a nominal gap of its own has its law about that.
+            let own = match template.about_nominal {
+                true => input(statement, design.at(target), &mut *files),
+                false => Ok((template.clone(), true)),
+            };
+            inputs.extend(mistakes.keep(own).map(|(own, _)| Input { target, ..own }));
         }
     }
     for together in &card.together {
@@ -72,13 +78,14 @@ fn member(together: &Together, target: Target, values: &[f64]) -> Result<Input> 
         source: together.source.clone(),
         group: Some(together.group.clone()),
         cost: together.cost.clone(),
+        about_nominal: false,
         law_text: together.law_text(),
         law_canonical: format!("together values={}", of_numbers(values)),
     })
 }
 
-/// One statement as an input, and whether it stands for one on each surface.
-fn input(statement: &Statement, files: &mut dyn Files) -> Result<(Input, bool)> {
+/// One statement as an input whose nominal value is `nominal`, and whether it stands for one on each surface.
+fn input(statement: &Statement, nominal: f64, files: &mut dyn Files) -> Result<(Input, bool)> {
     let Statement { target, key, node } = statement;
     if target.parameter == Parameter::BrakeRotors {
         let expected = "expected a continuous parameter; the number of rotors is an integer";
@@ -92,7 +99,7 @@ fn input(statement: &Statement, files: &mut dyn Files) -> Result<(Input, bool)> 
             key.place.error(problem, format!("expected {expected}"))
         })
     };
-    let law = understand(statement, files)?;
+    let law = understand(statement, nominal, files)?;
     let each_surface = match find("each_surface") {
         None => false,
         Some((key, node)) => {
@@ -129,6 +136,7 @@ fn input(statement: &Statement, files: &mut dyn Files) -> Result<(Input, bool)> 
         source,
         group,
         cost,
+        about_nominal: law.about_nominal,
         law_text: law.text,
         law_canonical: law.canonical,
     };

@@ -6,7 +6,7 @@ use super::card::Statement;
 use super::document::{Key, Node, Table, Value};
 use super::empirical::{listed, observed};
 use super::files::Files;
-use super::laws::{Kind, LAWS, LawInfo, keys_of, kind_of, law_keys};
+use super::laws::{Kind, LAWS, LawInfo, NOMINAL, keys_of, kind_of, law_keys};
 use super::mistakes::all;
 use super::read;
 use super::values::{check_possible, written};
@@ -25,6 +25,8 @@ pub(super) struct Understood {
     pub canonical: String,
     /// The readings that the law was made from.
     pub readings: Option<Readings>,
+    /// Whether its mean is the design's nominal value, whatever that is.
+    pub about_nominal: bool,
 }
 
 /// One value of a law with where it was written.
@@ -34,12 +36,16 @@ struct Given<'n> {
     node: &'n Node,
 }
 
-/// The marginal distribution of a statement.
+/// The marginal distribution of a statement about an input whose nominal value, SI, is `nominal`.
 ///
 /// # Errors
 /// A diagnostic: unknown law or key, keys missing or too many, an impossible number, no probability
 /// between the ends of a truncation.
-pub(super) fn understand(statement: &Statement, files: &mut dyn Files) -> Result<Understood> {
+pub(super) fn understand(
+    statement: &Statement,
+    nominal: f64,
+    files: &mut dyn Files,
+) -> Result<Understood> {
     let entries = read::table(&statement.node, "law = \"normal\"")?;
     let any = |name: &str| entries.iter().find(|(key, _)| key.name == name).map(|(_, node)| node);
     let names: Vec<&str> = LAWS.iter().map(|info| info.name).collect();
@@ -55,7 +61,7 @@ pub(super) fn understand(statement: &Statement, files: &mut dyn Files) -> Result
     check_keys(statement, entries, info)?;
     let form = choose_form(entries, info, law_node)?;
     let parameter = statement.target.parameter.info();
-    let reader = Reader { parameter, info, entries };
+    let reader = Reader { parameter, info, entries, nominal };
     let mut canonical = info.name.to_owned();
     let mut readings = None;
     let (law, error_place) = if info.name == "empirical" {
@@ -95,7 +101,8 @@ pub(super) fn understand(statement: &Statement, files: &mut dyn Files) -> Result
         end_place.place.error("the truncated distribution has zero probability", expected)
     })?;
     let text = reader.text(form, readings.as_ref());
-    Ok(Understood { marginal, text, canonical, readings })
+    let about_nominal = reader.entry("mean").is_some_and(is_nominal);
+    Ok(Understood { marginal, text, canonical, readings, about_nominal })
 }
 
 /// A numerical routine's complaint, shown where its argument was written.
@@ -199,6 +206,12 @@ struct Reader<'n> {
     parameter: &'static ParameterInfo,
     info: &'static LawInfo,
     entries: &'n Table,
+    nominal: f64,
+}
+
+/// Whether a value is written as the design's.
+fn is_nominal(node: &Node) -> bool {
+    matches!(&node.value, Value::String(text) if text.trim() == NOMINAL)
 }
 
 impl<'n> Reader<'n> {
@@ -211,6 +224,7 @@ impl<'n> Reader<'n> {
         let value = match kind_of(key) {
             Kind::Spread => self.spread(node)?,
             Kind::Positive => read::quantity(node, Quantity::Number)?,
+            _ if key == "mean" && is_nominal(node) => self.nominal,
             _ => read::quantity(node, quantity)?,
         };
         match kind_of(key) {

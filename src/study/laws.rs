@@ -1,5 +1,8 @@
 //! The laws that a card can name, and the keys that each takes.
 
+/// The mean of a law that goes with the design's value.
+pub(super) const NOMINAL: &str = "nominal";
+
 /// What a law's key takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -42,7 +45,7 @@ const fn term(key: &'static str, kind: Kind, description: &'static str) -> Term 
 
 /// Every key that some law takes.
 pub(super) static TERMS: &[Term] = &[
-    term("mean", Kind::Point, "mean"),
+    term("mean", Kind::Point, "mean; \"nominal\" is the design's value, wherever that goes"),
     term("median", Kind::Point, "median"),
     term("mode", Kind::Point, "most likely value"),
     term(

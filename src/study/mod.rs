@@ -125,6 +125,8 @@ pub struct Input {
     pub group: Option<String>,
     /// What it costs to narrow its spread; the gaps of one statement are bought together, once.
     pub cost: TighteningCost,
+    /// Whether the law's mean is the design's nominal value: it goes where that goes.
+    pub about_nominal: bool,
     /// The law as written, for a person.
     pub law_text: String,
     /// The law in SI with exact numbers, for the digest.

@@ -81,7 +81,9 @@ impl Study {
         let whole = Target::whole(target.parameter);
         let inherited = || self.stated.iter().find(|stated| stated.target == whole);
         let own = self.inputs.iter().find(|input| input.target == target);
-        let measured = own.filter(|own| self.prior.is_some() && own.marginal.mean() == value);
+        let measured = own.filter(|own| {
+            !own.about_nominal && self.prior.is_some() && own.marginal.mean() == value
+        });
         let source = match (stated.or_else(inherited), measured) {
             (Some(stated), _) => format!("{}: {}", stated.origin, stated.text),
             (None, Some(own)) => format!("mean of its law: {}", own.source),
@@ -113,7 +115,7 @@ impl Study {
             description: info.description,
             quantity: info.quantity,
             value,
-            text: engineering(value, info.quantity),
+            text: units::engineering(value, info.quantity),
             source,
             uncertain,
         }
@@ -172,15 +174,5 @@ impl Study {
             });
         }
         found
-    }
-}
-
-/// The value as its reader expects it: the one temperature difference, `B`, belongs to a law in K.
-fn engineering(value: f64, quantity: Quantity) -> String {
-    match quantity {
-        Quantity::TemperatureDifference => {
-            units::format_engineering(value, quantity, units::System::Si, 6)
-        }
-        _ => units::engineering(value, quantity),
     }
 }

@@ -3,7 +3,7 @@
 //! Made from the tables that the parser reads, so that neither knows a key that the other does not.
 //! A schema cannot tell units, ranges across keys or files; `reeldown check` does.
 
-use super::laws::{Kind, LAWS, LawInfo, TERMS, keys_of};
+use super::laws::{Kind, LAWS, LawInfo, NOMINAL, TERMS, keys_of};
 use super::vocabulary::{
     CARD, EPISTEMIC, GRADE, INPUT, KeyInfo, LIMIT, NUMERICS, RELIABILITY, REQUIREMENT, SAMPLING,
     SENSITIVITY, STUDY, TIGHTEN, TRADE, UNTIL,
@@ -352,6 +352,9 @@ fn input(info: &ParameterInfo) -> Value {
     ] });
     for term in TERMS {
         let value = match term.kind {
+            Kind::Point if term.key == "mean" => {
+                json!({ "anyOf": [reference(info.quantity), { "const": NOMINAL }] })
+            }
             Kind::Point => reference(info.quantity),
             Kind::Spread => reference(info.quantity.of_difference()),
             Kind::Positive => positive.clone(),

@@ -41,6 +41,7 @@ pub fn display(quantity: Quantity) -> DisplayUnit {
         Quantity::Time => scaled("s", 1.0),
         Quantity::Temperature => DisplayUnit { symbol: "°F", scale: 1.8, offset: -459.67 },
         Quantity::TemperatureDifference => scaled("°F", 1.8),
+        Quantity::TemperatureConstant => scaled("K", 1.0),
         Quantity::Speed => scaled("ft/s", 1.0 / 0.3048),
         Quantity::RotationalSpeed => scaled("rpm", 60.0 / std::f64::consts::TAU),
         Quantity::KinematicViscosity => scaled("cSt", 1e6),

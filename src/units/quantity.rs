@@ -13,6 +13,8 @@ pub enum Quantity {
     Temperature,
     /// A difference of temperatures, K: "10 °F" is 5.556 K.
     TemperatureDifference,
+    /// A constant of a law in absolute temperature, K, such as that of `exp(B/T)`.
+    TemperatureConstant,
     /// Speed, m/s.
     Speed,
     /// Rotational speed, rad/s.
@@ -50,7 +52,9 @@ impl Quantity {
             Quantity::Number => "",
             Quantity::Length => "m",
             Quantity::Time => "s",
-            Quantity::Temperature | Quantity::TemperatureDifference => "K",
+            Quantity::Temperature
+            | Quantity::TemperatureDifference
+            | Quantity::TemperatureConstant => "K",
             Quantity::Speed => "m/s",
             Quantity::RotationalSpeed => "rad/s",
             Quantity::KinematicViscosity => "m²/s",
@@ -74,7 +78,9 @@ impl Quantity {
             Quantity::Number => "",
             Quantity::Length => "_m",
             Quantity::Time => "_s",
-            Quantity::Temperature | Quantity::TemperatureDifference => "_k",
+            Quantity::Temperature
+            | Quantity::TemperatureDifference
+            | Quantity::TemperatureConstant => "_k",
             Quantity::Speed => "_m_per_s",
             Quantity::RotationalSpeed => "_rad_per_s",
             Quantity::KinematicViscosity => "_m2_per_s",
@@ -101,12 +107,13 @@ impl Quantity {
     }
 
     /// All kinds.
-    pub const ALL: [Quantity; 19] = [
+    pub const ALL: [Quantity; 20] = [
         Quantity::Number,
         Quantity::Length,
         Quantity::Time,
         Quantity::Temperature,
         Quantity::TemperatureDifference,
+        Quantity::TemperatureConstant,
         Quantity::Speed,
         Quantity::RotationalSpeed,
         Quantity::KinematicViscosity,
@@ -131,6 +138,7 @@ impl Quantity {
             Quantity::Time => "a time",
             Quantity::Temperature => "a temperature",
             Quantity::TemperatureDifference => "a temperature difference",
+            Quantity::TemperatureConstant => "a temperature constant",
             Quantity::Speed => "a speed",
             Quantity::RotationalSpeed => "a rotational speed",
             Quantity::KinematicViscosity => "a kinematic viscosity",
@@ -155,6 +163,7 @@ impl Quantity {
             Quantity::Length => &["in", "mm", "m"],
             Quantity::Time => &["s", "min"],
             Quantity::Temperature | Quantity::TemperatureDifference => &["°F", "°C", "K"],
+            Quantity::TemperatureConstant => &["K"],
             Quantity::Speed => &["ft/s", "m/s"],
             Quantity::RotationalSpeed => &["rpm", "rad/s"],
             Quantity::KinematicViscosity => &["cSt", "m²/s"],
@@ -180,6 +189,7 @@ impl Quantity {
             Quantity::Time => "3.5 min",
             Quantity::Temperature => "60 °F",
             Quantity::TemperatureDifference => "10 °F",
+            Quantity::TemperatureConstant => "1740 K",
             Quantity::Speed => "2.5 ft/s",
             Quantity::RotationalSpeed => "120 rpm",
             Quantity::KinematicViscosity => "125000 cSt",

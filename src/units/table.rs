@@ -129,7 +129,9 @@ impl Quantity {
             Quantity::Number => NONE,
             Quantity::Length => LENGTH,
             Quantity::Time => TIME,
-            Quantity::Temperature | Quantity::TemperatureDifference => TEMPERATURE,
+            Quantity::Temperature
+            | Quantity::TemperatureDifference
+            | Quantity::TemperatureConstant => TEMPERATURE,
             Quantity::Speed => SPEED,
             Quantity::RotationalSpeed => RATE,
             Quantity::KinematicViscosity => VISCOSITY,

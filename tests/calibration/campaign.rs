@@ -1,6 +1,6 @@
 //! The example campaign: a truck, a brake whose every number is known, and three instruments that err.
 //!
-//! The truth lies within the card of `distributions/habe.toml`, and each channel wanders about the model: the discrepancy
+//! The truth lies within the card of `tests/fixtures/habe`, and each channel wanders about the model: the discrepancy
 //! that a calibration has to live with.
 
 use reeldown::calibration::noise::Noise;

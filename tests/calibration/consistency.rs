@@ -104,7 +104,7 @@ fn least(study: &Study, runs: &[MeasuredRun], options: &Options) -> f64 {
 
 #[test]
 fn property_runs_of_one_brake_agree_and_runs_of_two_do_not() {
-    let study = Study::load(None, &[]).expect("the embedded study");
+    let study = crate::habe::pinned(&[]);
     let three = ["constant_force.csv", "constant_speed.csv", "constant_power.csv"];
     let options = Options::seeded(1993);
     // Each at 0.1 % if the noise were known; it is estimated. Four times in a hundred is measured; three or more of 24 would

@@ -2,6 +2,8 @@
 
 mod campaign;
 mod consistency;
+#[path = "../fixtures/habe.rs"]
+mod habe;
 mod linear;
 mod noise;
 mod planning;

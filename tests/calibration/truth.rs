@@ -6,14 +6,14 @@ use reeldown::calibration::{LeastSquares, LogLikelihood};
 use reeldown::campaign::calibration::{Channel, Coordinate, Options, RigLikelihood, plan};
 use reeldown::numerics::columns::Columns;
 use reeldown::numerics::special::{binomial, chi_squared as chi};
-use reeldown::study::{MeasuredRun, Study};
+use reeldown::study::MeasuredRun;
 
 /// Repetitions of the short form.
 const SHORT: u64 = 6;
 
 #[test]
 fn analytic_ranks_of_truths_from_the_prior_are_uniform_and_regions_hold_them() {
-    let study = Study::load(None, &[]).expect("the embedded study");
+    let study = crate::habe::pinned(&[]);
     let problem = problem(&study);
     let all: Vec<_> =
         (0..SHORT).map(|k| from_prior(&study, &problem, 100 + k, small_plan)).collect();
@@ -31,7 +31,7 @@ fn analytic_ranks_of_truths_from_the_prior_are_uniform_and_regions_hold_them() {
 /// chance in 400.
 #[test]
 fn property_the_campaign_s_truth_lies_in_the_region_of_a_repetition() {
-    let study = Study::load(None, &[]).expect("the embedded study");
+    let study = crate::habe::pinned(&[]);
     let both: Vec<_> = (0..2).map(|k| of_campaign(&study, k)).collect();
     let failures: Vec<_> = both.iter().flat_map(|repetition| &repetition.failures).collect();
     assert!(both.iter().any(|repetition| repetition.inside), "gates that failed: {failures:?}");
@@ -39,7 +39,7 @@ fn property_the_campaign_s_truth_lies_in_the_region_of_a_repetition() {
 
 #[test]
 fn property_the_least_squares_form_is_the_likelihood_s_own_slope() {
-    let study = Study::load(None, &[]).expect("the embedded study");
+    let study = crate::habe::pinned(&[]);
     let problem = problem(&study);
     let z: Vec<f64> = (0..problem.dimension()).map(|j| 0.3 * ((j * 7 % 5) as f64 - 2.0)).collect();
     let whitened = problem.whitened(&z, true).expect("a model").expect("a possible brake");
@@ -78,7 +78,7 @@ fn regression_the_shipped_campaign_is_what_its_command_makes() {
 /// A gain and an offset, taken as known, are the same as readings corrected by hand.
 #[test]
 fn analytic_an_instrument_s_errors_are_those_of_its_readings() {
-    let study = Study::load(None, &[]).expect("the embedded study");
+    let study = crate::habe::pinned(&[]);
     let runs: Vec<MeasuredRun> = campaign::runs(campaign::SEED)
         .expect("the campaign can be made")
         .into_iter()

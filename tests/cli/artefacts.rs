@@ -58,7 +58,7 @@ fn property_the_command_in_the_report_gives_the_same_bytes() {
 #[test]
 fn property_every_artefact_names_its_parents() {
     let place = Place::new("parents");
-    let card = include_str!("../../distributions/habe.toml");
+    let card = include_str!("../fixtures/habe/card.toml");
     place.write("card.toml", card);
     let text = "title = \"parents\"\ncard = \"card.toml\"\n[limits]\ntime = { max = \"210 s\" }\n";
     let study = place.write("study.toml", text);

@@ -14,7 +14,7 @@ const CARD: &str = "[initial.temperature]\nlaw = \"normal\"\nmean = \"60 °F\"\n
     [[correlation]]\nbetween = [\"brake.gap\", \"brake.gap\"]\nnormal = 0.25\nsource = \"one tool\"\n";
 
 fn study(place: &Place) -> String {
-    place.write("base.toml", include_str!("../../distributions/habe.toml"));
+    place.write("base.toml", include_str!("../fixtures/habe/card.toml"));
     place.write("card.toml", CARD);
     place.write("study.toml", STUDY)
 }

@@ -34,7 +34,7 @@ fn assert_says(answer: &Answer, parts: &[&str]) {
     }
 }
 
-const CARD: &str = include_str!("../../distributions/habe.toml");
+const CARD: &str = include_str!("../fixtures/habe/card.toml");
 
 #[test]
 fn property_an_unknown_key_names_the_nearest() {

@@ -11,7 +11,7 @@ const STUDY: &str = "title = \"few\"\ncard = \"card.toml\"\n[limits]\ntime = { m
 #[test]
 fn regression_a_handful_of_breaches_ranks_nothing_and_has_no_band() {
     let place = Place::new("few");
-    place.write("card.toml", include_str!("../../distributions/habe.toml"));
+    place.write("card.toml", include_str!("../fixtures/habe/card.toml"));
     let study = place.write("study.toml", STUDY);
     let answer = reeldown(&["run", &study, "--out", &place.at("run")]).ended_with(0);
     let words = answer.out.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -51,7 +51,7 @@ fn regression_a_handful_of_breaches_ranks_nothing_and_has_no_band() {
 #[test]
 fn regression_where_the_medians_breach_no_way_not_to_is_called_the_most_likely_way_to() {
     let place = Place::new("medians-breach");
-    place.write("card.toml", include_str!("../../distributions/habe.toml"));
+    place.write("card.toml", include_str!("../fixtures/habe/card.toml"));
     let study = "title = \"certain\"\ncard = \"card.toml\"\n[limits]\ntime = { max = \"150 s\" }\n\
         [sampling]\nsamples = 2000\n[reliability]\nmethods = [\"importance-sampling\", \"subset-simulation\"]\n\
         [sensitivity]\nbase_samples = 1024\nbootstrap = 100\n[trade]\nsamples = 200\n\

@@ -4,6 +4,9 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+/// The study whose answers are certified: see its head.
+pub const PINNED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/habe/study.toml");
+
 /// What a run of the program left behind.
 pub struct Answer {
     /// Exit code.

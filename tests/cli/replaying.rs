@@ -41,7 +41,7 @@ fn property_any_sample_comes_out_the_same_again() {
 #[test]
 fn property_a_replay_needs_no_study_file() {
     let place = Place::new("moved");
-    place.write("card.toml", include_str!("../../distributions/habe.toml"));
+    place.write("card.toml", include_str!("../fixtures/habe/card.toml"));
     let study = "title = \"moved\"\ncard = \"card.toml\"\n[limits]\ntime = { max = \"210 s\" }\n";
     let study = place.write("moved.toml", study);
     run(&place, "run", &[&study, "--samples", "50"]).ended_with(0);

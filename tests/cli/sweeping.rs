@@ -35,6 +35,34 @@ fn property_a_design_value_in_the_sweep_is_that_value_in_a_run() {
     assert_eq!(found["cells"][2]["counts"][0]["breaches"], breaches_of_a_run(&place, &set));
 }
 
+/// The lot's tolerance is a share of whatever viscosity is chosen, and the payload's of whatever weight: swept or set, the
+/// laws go along.
+#[test]
+fn property_a_swept_value_takes_its_tolerance_with_it() {
+    let place = Place::new("sweep-tolerance");
+    let few = ["--samples", "2000"];
+    for (path, over, value, meaning) in [
+        ("fluid.nominal_viscosity", "80000cSt..150000cSt:2", "150000 cSt", "design"),
+        ("payload.weight", "5400lbf..6000lbf:2", "5400 lbf", "centred"),
+        ("brake.outer_radius", "8.2in..8.5in:2", "8.2 in", "centred"),
+    ] {
+        let found = sweep(&place, &[&["--over", &format!("{path}={over}")], &few[..]].concat());
+        assert_eq!(found["paths"][0]["meaning"], meaning);
+        let cell = if meaning == "design" { 1 } else { 0 };
+        let swept = found["cells"][cell]["counts"][0]["breaches"].as_i64().expect("a count");
+        let set = format!("{path}={value}");
+        let run = breaches_of_a_run(&place, &[&few[..], &["--set", &set]].concat());
+        // A mean that is moved is that mean but for rounding: a sample at a limit may fall either way.
+        assert!((swept - run.as_i64().expect("a count")).abs() <= 1, "{path}: {swept} {run}");
+        assert!(swept > 0 && swept < 2000, "{path}: {swept}");
+    }
+    // The lot's law is that of a factor: at no viscosity is its effect lost.
+    let at = |set: &[&str]| breaches_of_a_run(&place, &[&few[..], set].concat());
+    let design = "fluid.nominal_viscosity=150000 cSt";
+    let tight = ["--set", design, "--set", "fluid.lot_factor.sd=1e-9"];
+    assert_ne!(at(&["--set", design]), at(&tight));
+}
+
 #[test]
 fn property_what_is_measured_on_the_day_is_held_and_can_be_centred() {
     let place = Place::new("sweep-held");
@@ -217,7 +245,7 @@ fn property_every_bad_range_is_one_clear_message() {
         let fixed = ["sweep", "--out", &out, "--over", TEMPERATURE];
         assert_says(&reeldown(&[&fixed[..], options].concat()).ended_with(1), parts);
     }
-    place.write("card.toml", include_str!("../../distributions/habe.toml"));
+    place.write("card.toml", include_str!("../fixtures/habe/card.toml"));
     let study = place.write("plain.toml", "title = \"x\"\ncard = \"card.toml\"\n");
     let answer = reeldown(&["sweep", &study, "--out", &out, "--over", TEMPERATURE]);
     assert_says(&answer.ended_with(1), &["the study states no limit", "--nominal"]);

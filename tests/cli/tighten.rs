@@ -1,10 +1,10 @@
 //! `reeldown tighten`: plans that are demonstrated, plans that do not exist, and what may be bought and moved.
 
-use super::program::{Place, reeldown};
+use super::program::{PINNED, Place, reeldown};
 use serde_json::Value;
 
 /// A quick search: few samples, the quasi-steady model.
-const QUICK: &[&str] = &["--set", "tighten.samples=2000", "--set", "model=quasi-steady"];
+const QUICK: &[&str] = &[PINNED, "--set", "tighten.samples=2000", "--set", "model=quasi-steady"];
 /// Nothing can be bought of what is not named otherwise.
 const NOTHING: &[&str] = &[
     "brake.gap",

@@ -1,6 +1,6 @@
 //! Joint samples in cards: from CSV and Parquet, replayed, and refused when the file is another.
 
-use super::program::{Place, reeldown};
+use super::program::{PINNED, Place, reeldown};
 use reeldown::store::{Field, write_table};
 
 const STUDY: &str = "title = \"joint\"\ncard = [\"base.toml\", \"card.toml\"]\n\
@@ -13,8 +13,8 @@ fn write(place: &Place, name: &str, text: &str) {
 
 /// A study whose inputs are drawn from an earlier run's own table of samples.
 fn of_an_earlier_run(place: &Place) {
-    reeldown(&["run", "--samples", "300", "--out", &place.at("first"), "--quiet"]);
-    write(place, "base.toml", include_str!("../../distributions/habe.toml"));
+    reeldown(&["run", PINNED, "--samples", "300", "--out", &place.at("first"), "--quiet"]);
+    write(place, "base.toml", include_str!("../fixtures/habe/card.toml"));
     write(
         place,
         "card.toml",
@@ -58,7 +58,17 @@ fn property_a_run_draws_rows_of_a_parquet_file_and_replays_them() {
     });
     assert!(seen, "{sample}");
     // Another file under the same name: replay refuses.
-    reeldown(&["run", "--samples", "299", "--seed", "2", "--out", &place.at("first"), "--quiet"]);
+    reeldown(&[
+        "run",
+        PINNED,
+        "--samples",
+        "299",
+        "--seed",
+        "2",
+        "--out",
+        &place.at("first"),
+        "--quiet",
+    ]);
     let refused = reeldown(&["replay", &table, "--index", "77"]).ended_with(1);
     assert!(refused.err.contains("is another one"), "{}", refused.err);
 }
@@ -66,7 +76,7 @@ fn property_a_run_draws_rows_of_a_parquet_file_and_replays_them() {
 #[test]
 fn property_csv_with_units_is_the_same_sample_in_si() {
     let place = Place::new("together-csv");
-    write(&place, "base.toml", include_str!("../../distributions/habe.toml"));
+    write(&place, "base.toml", include_str!("../fixtures/habe/card.toml"));
     write(&place, "study.toml", STUDY);
     let card = |file: &str| {
         format!(
@@ -102,7 +112,7 @@ fn property_csv_with_units_is_the_same_sample_in_si() {
 #[test]
 fn property_a_calibrated_card_tells_what_it_changed() {
     let place = Place::new("together-calibrated");
-    write(&place, "base.toml", include_str!("../../distributions/habe.toml"));
+    write(&place, "base.toml", include_str!("../fixtures/habe/card.toml"));
     let rows: String = (0..200)
         .map(|k| format!("{},{}\n", 0.93 + 0.0002 * f64::from(k), 3900.0 + 0.3 * f64::from(k)))
         .collect();
@@ -170,7 +180,7 @@ fn property_a_calibrated_card_tells_what_it_changed() {
 #[test]
 fn regression_a_row_without_a_number_names_file_column_row_and_what_was_expected() {
     let place = Place::new("together-gaps");
-    write(&place, "base.toml", include_str!("../../distributions/habe.toml"));
+    write(&place, "base.toml", include_str!("../fixtures/habe/card.toml"));
     write(&place, "study.toml", STUDY);
     let refused = |file: &str| {
         let card = format!("[[joint]]\nfile = \"{file}\"\nknown = \"never\"\nsource = \"test\"\n");

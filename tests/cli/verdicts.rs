@@ -46,7 +46,7 @@ fn property_exit_codes_tell_the_verdict() {
 #[test]
 fn property_without_a_requirement_the_headline_is_the_interval_of_the_table() {
     let place = Place::new("headline");
-    place.write("card.toml", include_str!("../../distributions/habe.toml"));
+    place.write("card.toml", include_str!("../fixtures/habe/card.toml"));
     for (design, limit) in [("sobol", 210), ("latin-hypercube", 210), ("halton", 1500)] {
         let text = format!(
             "title = \"h\"\ncard = \"card.toml\"\n[limits]\ntime = {{ max = \"{limit} s\" }}\n\
@@ -87,7 +87,7 @@ const STUCK: &str = "title = \"stuck\"\ncard = \"card.toml\"\n[design]\n\
 #[test]
 fn property_a_line_that_never_runs_out_is_a_breach() {
     let place = Place::new("stuck");
-    place.write("card.toml", include_str!("../../distributions/habe.toml"));
+    place.write("card.toml", include_str!("../fixtures/habe/card.toml"));
     let study = place.write("stuck.toml", STUCK);
     let answer = run(&place, &[&[&study, "--json"]]).ended_with(3);
     let findings = answer.json();
@@ -113,7 +113,7 @@ fn property_a_line_that_never_runs_out_is_a_breach() {
     let note = "a descent that has not deployed after 1800 s";
     assert!(answer.err.contains(note), "{}", answer.err);
     let place = Place::new("stuck-sweep");
-    place.write("card.toml", include_str!("../../distributions/habe.toml"));
+    place.write("card.toml", include_str!("../fixtures/habe/card.toml"));
     let study = place.write("stuck.toml", STUCK);
     let over = "fluid.nominal_viscosity=1e8cSt..1.25e8cSt:3";
     reeldown(&["sweep", "--over", over, "--out", &place.at("swept"), &study]).ended_with(0);
@@ -143,7 +143,7 @@ fn property_what_no_sample_shows_is_not_told() {
 #[test]
 fn property_without_a_requirement_done_is_done() {
     let place = Place::new("no-requirement");
-    place.write("card.toml", include_str!("../../distributions/habe.toml"));
+    place.write("card.toml", include_str!("../fixtures/habe/card.toml"));
     let study = place.write("plain.toml", "title = \"plain\"\ncard = \"card.toml\"\n");
     let answer = run(&place, &[STRICT, &["--samples", "20", &study]]).ended_with(0);
     assert!(answer.out.contains("no limit"), "{}", answer.out);

@@ -2,15 +2,12 @@
 
 use reeldown::analysis::{self, Options, Results};
 use reeldown::campaign::Progress;
-use reeldown::study::{Override, Study};
 use std::sync::OnceLock;
 
 fn run(settings: &[&str]) -> Results {
     let quick = ["trade.samples=0", "reliability.methods=[]"];
     let settings = settings.iter().chain(&quick);
-    let overrides: Vec<Override> =
-        settings.map(|text| Override::parse("--set", text).unwrap()).collect();
-    let study = Study::load(None, &overrides).unwrap();
+    let study = crate::habe::pinned(&settings.copied().collect::<Vec<_>>());
     let command = Some("reeldown run".to_owned());
     let options = Options { command, ..Options::default() };
     analysis::run(&study, &options, &Progress::default()).unwrap().expect("a whole run")

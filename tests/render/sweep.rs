@@ -6,10 +6,10 @@ use reeldown::campaign::sweep::{Grid, SweptPath, run_sweep};
 use reeldown::findings::known::GoAnswer;
 use reeldown::findings::sweep::{SweepFinding, sweep};
 use reeldown::render::{sweep_figures, sweep_markdown, sweep_terminal};
-use reeldown::study::{Over, Study};
+use reeldown::study::Over;
 
 fn finding(overs: &[&str], samples: Option<u64>) -> SweepFinding {
-    let study = Study::load(None, &[]).unwrap();
+    let study = crate::habe::pinned(&[]);
     let path = |text: &&str| SweptPath::of(&study, &Over::parse("--over", text).unwrap());
     let grid = Grid { paths: overs.iter().map(path).collect() };
     let progress = Progress::default();

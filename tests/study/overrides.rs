@@ -3,6 +3,7 @@
 use super::sources::shipped;
 use reeldown::descent::Model;
 use reeldown::error::Error;
+use reeldown::physics::design::Target;
 use reeldown::physics::parameters::Parameter;
 use reeldown::reliability::adaptive::Until;
 
@@ -37,7 +38,8 @@ fn property_an_override_reaches_every_part_of_a_study() {
     assert_eq!(study.limits[0].value, 200.0);
     assert_eq!(study.limits.len(), 4);
     assert_eq!(study.requirement.map(|requirement| requirement.reliability), Some(0.999));
-    assert!(study.inputs[0].law_text.contains("sd 0.004 in"));
+    let gap = study.inputs.iter().find(|input| input.target == Target::gap(0)).expect("a gap");
+    assert!(gap.law_text.contains("sd 0.004 in"));
     let temperature = study.inputs.last().expect("inputs");
     assert_eq!(temperature.marginal.upper(), Some((90.0 + 459.67) / 1.8));
     // The nominal value moved; the samples still follow the card, and the study says so.
@@ -68,7 +70,7 @@ fn property_a_limit_that_an_option_moves_does_not_come_from_where_the_file_says(
 
 #[test]
 fn property_fewer_rotors_have_fewer_uncertain_gaps() {
-    assert_eq!(shipped(&["brake.rotors=2"]).expect("a study").inputs.len(), 4 + 9);
+    assert_eq!(shipped(&["brake.rotors=2"]).expect("a study").inputs.len(), 4 + 14);
 }
 
 #[test]

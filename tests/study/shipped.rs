@@ -8,6 +8,7 @@ use reeldown::study::{Grade, Known, LimitKind, Study, TighteningCost};
 use reeldown::uncertainty::{Law, Marginal};
 
 const INCH: f64 = 0.0254;
+const POUND: f64 = 4.448_221_615_260_5;
 
 #[test]
 fn published_the_embedded_study_is_the_papers_case() {
@@ -40,7 +41,7 @@ fn published_the_embedded_study_is_the_papers_case() {
 #[test]
 fn published_the_card_is_the_table_of_what_is_uncertain() {
     let study = Study::load(None, &[]).expect("the embedded study is good");
-    assert_eq!(study.inputs.len(), 23);
+    assert_eq!(study.inputs.len(), 28);
     assert!(study.joint.is_independent());
     let gap = Marginal::new(
         Law::normal(0.062 * INCH, 0.003 * INCH).expect("a law"),
@@ -48,7 +49,8 @@ fn published_the_card_is_the_table_of_what_is_uncertain() {
         Some(0.071 * INCH),
     )
     .expect("a marginal");
-    for (surface, input) in study.inputs.iter().take(14).enumerate() {
+    let gaps = study.inputs.iter().filter(|i| i.target.parameter == Parameter::BrakeGap);
+    for (surface, input) in gaps.enumerate() {
         assert_eq!(input.target, Target::gap(surface));
         assert_eq!(input.marginal, gap);
         assert_eq!(input.known, Known::AtBuild);
@@ -70,6 +72,17 @@ fn published_the_card_is_the_table_of_what_is_uncertain() {
     assert_eq!(of(Parameter::ThermalRotorHousingConductance), lognormal(9.5, 0.15));
     let normal = |mean, sd| Law::normal(mean, sd).expect("a law");
     assert_eq!(of(Parameter::FluidAveragingOffset), Marginal::untruncated(normal(0.0, 0.1)));
+    // What the paper's design chose or took, to the tolerances of the trades.
+    for (parameter, mean, sd) in [
+        (Parameter::BrakeOuterRadius, 8.5 * INCH, 0.2e-3),
+        (Parameter::FluidViscosityTemperature, 1740.0, 8.0),
+        (Parameter::ReelFullRadius, 11.0 * INCH, 0.04 * INCH),
+        (Parameter::PayloadWeight, 6000.0 * POUND, 30.0 * POUND),
+    ] {
+        assert_eq!(of(parameter), Marginal::untruncated(normal(mean, sd)), "{parameter:?}");
+    }
+    let lot = Marginal::new(normal(1.0, 0.025), Some(0.95), Some(1.05)).expect("a marginal");
+    assert_eq!(of(Parameter::FluidLotFactor), lot);
     let kelvin = |fahrenheit: f64| (fahrenheit + 459.67) / 1.8;
     let start =
         Marginal::new(normal(kelvin(60.0), 10.0 / 1.8), Some(kelvin(0.0)), Some(kelvin(100.0)));
@@ -90,6 +103,51 @@ fn published_every_limit_of_the_shipped_studies_states_its_source() {
         assert!(limit.source_text().starts_with(begins), "{}", limit.source_text());
         assert!(calibrated.contains(limit.source_text()), "{}", limit.source_text());
     }
+}
+
+fn property_tolerances_can_be_bought_and_the_weather_and_the_model_s_error_cannot() {
+    let study = Study::load(None, &[]).expect("the embedded study is good");
+    for input in &study.inputs {
+        let nobody_sells = ["initial.temperature", "fluid.averaging_offset"];
+        let expected = match nobody_sells.contains(&input.target.path().as_str()) {
+            true => TighteningCost::None,
+            false => TighteningCost::PerHalving(1.0),
+        };
+        assert_eq!(input.cost, expected, "{}", input.target.path());
+    }
+}
+
+/// The mean and the standard deviation of an input's law, SI.
+fn law(study: &Study, target: Target) -> (f64, f64) {
+    let input = study.inputs.iter().find(|input| input.target == target).expect("uncertain");
+    (input.marginal.mean(), input.marginal.sd())
+}
+
+#[test]
+fn property_a_law_about_the_nominal_value_goes_where_the_design_goes() {
+    let weight = Target::whole(Parameter::PayloadWeight);
+    let moved = shipped(&["payload.weight=5500 lbf"]).expect("a study");
+    assert_eq!(law(&moved, weight), (5500.0 * POUND, 30.0 * POUND));
+    // Nothing is to be said of a law that goes along, and it is the law with that mean written out.
+    assert!(moved.notes.is_empty(), "{:?}", moved.notes);
+    let written = shipped(&["payload.weight=5500 lbf", "payload.weight.mean=5500 lbf"]);
+    assert_eq!(moved.digest(), written.expect("a study").digest());
+    assert_ne!(moved.digest(), shipped(&[]).expect("a study").digest());
+    // A law with a mean of its own stays, and says so.
+    let own = shipped(&["payload.weight=5500 lbf", "payload.weight.mean=6000 lbf"]);
+    let own = own.expect("a study");
+    assert_eq!(law(&own, weight), (6000.0 * POUND, 30.0 * POUND));
+    assert!(own.notes.iter().any(|note| note.starts_with("payload.weight = 5500 lbf")));
+    // A surface with a gap of its own has its law about that.
+    let gap = "[brake.gap]\nlaw = \"normal\"\nmean = \"nominal\"\ncv = \"5 %\"\neach_surface = true\n\
+               known = \"at build\"\nsource = \"x\"\n";
+    let text = "title = \"x\"\ncard = \"card.toml\"\n[design]\n\"brake.gap[3]\" = \"0.07 in\"\n";
+    let study = study_with(text, gap, &[]).expect("a study");
+    assert_eq!(law(&study, Target::gap(2)), (0.07 * INCH, 0.05 * (0.07 * INCH)));
+    assert_eq!(law(&study, Target::gap(3)), (0.062 * INCH, 0.05 * (0.062 * INCH)));
+    // The mean alone can be so written.
+    let wrong = shipped(&["payload.weight.sd=nominal"]).expect_err("no spread").to_string();
+    assert!(wrong.contains("expected a force"), "{wrong}");
 }
 
 #[test]
@@ -221,7 +279,7 @@ fn property_later_cards_win_input_by_input() {
 fn property_every_parameter_is_listed_with_its_source() {
     let study = shipped(&["initial.temperature=0 °F", "brake.gap[3]=0.07 in"]).expect("a study");
     let rows = study.resolved();
-    assert_eq!(rows.len(), 36 + 1);
+    assert_eq!(rows.len(), 37 + 1);
     let row = |path: &str| rows.iter().find(|row| row.path == path).expect("a row");
     assert_eq!(row("initial.temperature").text, "0 °F (255.372 K)");
     assert_eq!(row("initial.temperature").source, "--set: 0 °F");
@@ -302,7 +360,7 @@ fn property_the_most_demanding_requirement_that_is_read_can_be_judged() {
 #[test]
 fn property_a_group_of_one_input_is_that_input() {
     // The pair's index used to be lost without a word: a factor of one input has no group beside it.
-    let card = include_str!("../../distributions/habe.toml");
+    let card = include_str!("../fixtures/habe/card.toml");
     let study = "title = \"x\"\ncard = [\"habe.toml\", \"card.toml\"]\n[sensitivity]\n\
                  pairs = [[\"law\", \"initial.temperature\"]]\n";
     let shear = "[fluid.shear_factor]\nlaw = \"lognormal\"\nmedian = 1\ncv = \"8 %\"\n\

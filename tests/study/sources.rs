@@ -47,11 +47,11 @@ impl Files for Memory {
     }
 }
 
-/// A study text with the shipped card as `habe.toml`, and a text as `card.toml`.
+/// A study text with the shipped card under its own name, the pinned one as `habe.toml`, and a text as `card.toml`.
 pub fn study_with(study: &str, card: &str, overrides: &[&str]) -> Result<Study> {
     let study = NamedText { origin: "study.toml".to_owned(), text: study.to_owned() };
     let cards = [
-        ("habe.toml", EMBEDDED_CARD),
+        ("habe.toml", include_str!("../fixtures/habe/card.toml")),
         ("../../distributions/habe.toml", EMBEDDED_CARD),
         ("card.toml", card),
     ];

@@ -5,17 +5,12 @@ use reeldown::campaign::common_numbers::{Breaches, Change, CommonSample, Event};
 use reeldown::campaign::trade::{design_value_anew, run_trade, trade_factors};
 use reeldown::campaign::{Progress, Record};
 use reeldown::streams::Purpose;
-use reeldown::study::{Override, Study};
+use reeldown::study::Study;
 
-/// The embedded study, quasi-steady, with few samples.
+/// The pinned study, quasi-steady, with few samples.
 pub fn study(set: &[&str]) -> Study {
     let few = ["model=quasi-steady", "sampling.samples=20000", "trade.samples=4000"];
-    let overrides: Vec<Override> = few
-        .iter()
-        .chain(set)
-        .map(|text| Override::parse("--set", text).expect("an override"))
-        .collect();
-    Study::load(None, &overrides).expect("the embedded study is good")
+    crate::habe::pinned(&[&few[..], set].concat())
 }
 
 pub fn recorded(study: &Study) -> Record {

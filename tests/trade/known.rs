@@ -1,12 +1,12 @@
 //! What becomes known when.
 
 use super::curves::study;
-use reeldown::campaign::Progress;
-use reeldown::campaign::common_numbers::{Change, CommonSample, Event};
+use reeldown::campaign::common_numbers::{Breaches, Change, CommonSample, Event};
 use reeldown::campaign::known::{INNER, Second, run_known};
+use reeldown::campaign::{Ensemble, Progress};
 use reeldown::physics::{Parameter, Target};
 use reeldown::streams::Purpose;
-use reeldown::study::{Known, Study};
+use reeldown::study::{Known, Override, Study};
 
 #[test]
 fn property_known_temperatures_average_to_the_probability() {
@@ -49,7 +49,7 @@ fn property_known_temperatures_average_to_the_probability() {
 }
 
 fn correlated() -> Study {
-    let card = reeldown::study::EMBEDDED_CARD.to_owned()
+    let card = include_str!("../fixtures/habe/card.toml").to_owned()
         + "\n[[correlation]]\nbetween = [\"initial.temperature\", \"fluid.shear_factor\"]\nnormal = 0.9\nsource = \"test\"\n";
     struct One(String);
     impl reeldown::study::Files for One {
@@ -60,7 +60,8 @@ fn correlated() -> Study {
             Err("none".into())
         }
     }
-    let text = reeldown::study::EMBEDDED_STUDY.replace("\"dynamic\"", "\"quasi-steady\"");
+    let text =
+        include_str!("../fixtures/habe/study.toml").replace("\"dynamic\"", "\"quasi-steady\"");
     let main = reeldown::study::NamedText { origin: "study.toml".into(), text };
     reeldown::study::assemble(&main, &[], &mut One(card)).expect("a study")
 }
@@ -90,4 +91,33 @@ fn analytic_a_known_value_moves_what_depends_on_it() {
     let change = Change { known: vec![(temperature, 295.0)], ..Change::default() };
     let given = sets.changed(&change, &Progress::default()).expect("breaches");
     assert_eq!(given.rows(), 400);
+}
+
+#[test]
+fn property_a_measured_lot_has_no_tolerance_left() {
+    let set = ["model=quasi-steady", "sampling.samples=20000", "trade.samples=2000"];
+    let overrides = set.map(|text| Override::parse("--set", text).expect("an override"));
+    let study = Study::load(None, &overrides).expect("the embedded study");
+    let found = run_known(&study, &Progress::default()).expect("an answer").expect("one");
+    let map = found.map.expect("a map");
+    let nominal = Target::whole(Parameter::FluidNominalViscosity);
+    assert_eq!(map.beside, Second::Lot(nominal));
+    let place = |path: &str| {
+        study.inputs.iter().position(|input| input.target.path() == path).expect("an input")
+    };
+    let sample = CommonSample::independent(&study, 0..map.samples, Purpose::Known);
+    let sample = sample.expect("a sample");
+    for (row, column) in [(3, 5), (5, 10), (8, 14)] {
+        // The same draws with the two values written over theirs: the nominal viscosity of a lot that is just that.
+        let mut draws = sample.inputs().clone();
+        draws.column_mut(map.input).fill(map.first[row]);
+        draws.column_mut(place("fluid.lot_factor")).fill(1.0);
+        let mut of_lot = study.clone();
+        of_lot.design.set(nominal, map.second[column]);
+        let table = Ensemble::new(&of_lot).at_inputs(&draws, &Progress::default());
+        let expected = Breaches::of(&of_lot, &table).count(Event::Any).breaches;
+        let cell = map.breaches[row * map.second.len() + column].count(Event::Any).breaches;
+        assert!(expected > 0 && expected < map.samples, "{row} {column}: {expected}");
+        assert_eq!(cell, expected, "{row} {column}");
+    }
 }

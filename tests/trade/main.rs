@@ -3,6 +3,9 @@
 mod beliefs;
 mod curves;
 mod derivatives;
+mod exact;
+#[path = "../fixtures/habe.rs"]
+mod habe;
 mod known;
 mod plans;
 mod rig_plans;

@@ -68,7 +68,7 @@ fn by_descents(
 
 #[test]
 fn reference_brute_force_on_one_candidate_and_on_none() {
-    let study = Study::load(None, &[]).expect("the embedded study");
+    let study = crate::habe::pinned(&[]);
     let parameters = Parameters::new(&study);
     let spaces = HalfSpaces::new(&study, &parameters.inputs, &Progress::default()).unwrap();
     let count = parameters.count();

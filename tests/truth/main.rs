@@ -5,7 +5,10 @@ mod breach_probability;
 mod detailed_descents;
 mod driven_runs;
 mod first_order;
+#[path = "../fixtures/habe.rs"]
+mod habe;
 mod hard_designs;
+mod lot_factor;
 mod near_certainty;
 mod paper_statements;
 mod reference_descents;

@@ -16,7 +16,7 @@ use crate::numerics::columns::Columns;
 use crate::numerics::special::normal;
 use crate::physics::Parameter;
 use crate::study::Study;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// A measurement that could be made next, and what it is expected to do.
 #[derive(Debug, Clone)]
@@ -176,15 +176,7 @@ impl Planner<'_> {
             &inputs,
             &by_input,
         ));
-        found.extend(self.direct(
-            "viscometer run of the lot",
-            "viscosity at the working shear rate to 2 %",
-            |parameter, value| {
-                (parameter == Parameter::FluidShearFactor).then_some(VISCOMETER * value)
-            },
-            &inputs,
-            &by_input,
-        ));
+        found.extend(self.viscometer(&inputs, &by_input));
         Ok(found)
     }
 
@@ -290,6 +282,25 @@ impl Planner<'_> {
             }
         }
         any.then(|| (name.to_owned(), detail.to_owned(), matrix))
+    }
+
+    /// Information of the lot's viscosity as it is sheared: of the product of lot and shear, which it cannot tell apart.
+    fn viscometer(&self, inputs: &[f64], by_input: &[Vec<f64>]) -> Option<Measurement> {
+        let factors: Vec<usize> = (0..inputs.len())
+            .filter(|&i| {
+                let parameter = self.study.inputs[i].target.parameter;
+                matches!(parameter, Parameter::FluidShearFactor | Parameter::FluidLotFactor)
+            })
+            .collect();
+        // Of the product's logarithm.
+        let slope = |j: &usize| -> f64 {
+            let of = |&i: &usize| by_input[i].get(*j).copied().unwrap_or(0.0) / inputs[i];
+            factors.iter().map(of).sum::<f64>() / VISCOMETER
+        };
+        let slopes = DVector::from_iterator(self.columns.len(), self.columns.iter().map(slope));
+        let detail = "viscosity at the working shear rate to 2 %".to_owned();
+        (!factors.is_empty())
+            .then(|| ("viscometer run of the lot".to_owned(), detail, &slopes * slopes.transpose()))
     }
 }
 
