@@ -103,7 +103,7 @@ fn rig_comparison(comparison: &Comparison, medium: Medium) -> String {
     let rows = vec![
         row(
             "held",
-            &|m| format!("{}{}", value(m.level, held(m.mode)), if m.reduced { " *" } else { "" }),
+            &|m| format!("{}{}", value(m.level, held(m.mode)), if m.reduced { " (*)" } else { "" }),
             none(),
         ),
         row("duration", &|m| value(m.duration_s, Quantity::Time), none()),
@@ -139,7 +139,7 @@ fn rig_comparison(comparison: &Comparison, medium: Medium) -> String {
     text += &medium.paragraph(&format!("flight, on the mean over its time: {}", means.join(", ")));
     if modes.iter().any(|mode| mode.reduced) {
         text += &medium.line(
-            "* the greatest within proof load and the fluid's limit: the flight's mean is not",
+            "(*) the greatest within proof load and the fluid's limit: the flight's mean is not",
         );
     }
     let cases: Vec<&[f64]> = modes.iter().map(|mode| mode.remaining.as_slice()).collect();
