@@ -71,8 +71,9 @@ fn property_the_ranking_is_of_the_outcome_that_is_breached_most_and_is_in_the_re
     let sample = independent();
     let ranking = sample.findings.measures.ranking.as_ref().unwrap();
     assert_eq!(ranking.output.to_string(), "time");
-    // Shapley effects were not asked for.
-    assert_eq!(ranking.measures.len(), 9);
+    // Those of two designs of their own, and eight of the run's samples.
+    assert_eq!(ranking.measures[..2], ["Sobol' total", "Shapley"]);
+    assert_eq!(ranking.measures.len(), 10);
     assert_eq!(ranking.rows.len(), 10);
     for measure in 0..ranking.measures.len() {
         let mut ranks: Vec<usize> = ranking.rows.iter().map(|row| row.ranks[measure]).collect();
