@@ -81,9 +81,12 @@ impl Analysis<'_> for ExactOutcomes {
     }
 }
 
-/// Moves every exact value and the mean of every input. `None` if `progress` asks for a stop. An error is what the
-/// sampler refuses, and a value that does not fit the study.
-fn run_exact(study: &Study, progress: &Progress) -> Result<Option<ExactOutcomes>> {
+/// Moves every exact value and the mean of every input. `None` if `progress` asks for a stop.
+///
+/// # Errors
+///
+/// What the sampler refuses, and a value that does not fit the study.
+pub fn run_exact(study: &Study, progress: &Progress) -> Result<Option<ExactOutcomes>> {
     let sample = CommonSample::of_run(study, ROWS)?;
     let base = sample.base(progress)?;
     let mut values = Vec::new();

@@ -105,6 +105,7 @@ fn published_every_limit_of_the_shipped_studies_states_its_source() {
     }
 }
 
+#[test]
 fn property_tolerances_can_be_bought_and_the_weather_and_the_model_s_error_cannot() {
     let study = Study::load(None, &[]).expect("the embedded study is good");
     for input in &study.inputs {
