@@ -66,7 +66,7 @@ fn property_check_shows_every_input_with_unit_and_source() {
     assert_eq!(gap["unit"], "m");
     let uncertain: u64 =
         inputs.iter().filter_map(|input| input["uncertain"]["inputs"].as_u64()).sum();
-    assert_eq!(uncertain, 23, "the default card has 23 uncertain inputs");
+    assert_eq!(uncertain, 28, "the default card has 28 uncertain inputs");
     assert_eq!(object["limits"].as_array().map(Vec::len), Some(3));
 }
 
