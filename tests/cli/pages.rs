@@ -54,10 +54,12 @@ fn property_every_command_writes_the_page_of_its_report() {
     tighten.extend(few);
     let out = place.at("tighten");
     tighten.extend(["--out", &out]);
-    reeldown(&tighten);
+    reeldown(&tighten).ended_with(0);
     says_the_same(&place, "tighten/tighten.md", "tighten/tighten.html");
     for (name, seed) in [("a", "1"), ("b", "2")] {
-        reeldown(&["run", "--samples", "400", "--seed", seed, "--quiet", "--out", &place.at(name)]);
+        let out = place.at(name);
+        reeldown(&["run", "--samples", "400", "--seed", seed, "--quiet", "--out", &out])
+            .ended_with(3);
     }
     let (markdown, page) = (place.at("compare.md"), place.at("compare.html"));
     let (a, b) = (place.at("a"), place.at("b"));
